@@ -12,9 +12,9 @@ pub const MOST_AXES: usize = 4;
 /// The greatest number of members that can be asked for.
 pub const MOST_MEMBERS: usize = 200;
 /// The picks use at most one part in this many of the evaluations of their search, or [`PICKS_LEAST`] if that is more.
-pub const PICKS_SHARE: u64 = 4;
+const PICKS_SHARE: u64 = 4;
 /// As [`PICKS_SHARE`].
-pub const PICKS_LEAST: u64 = 10_000;
+const PICKS_LEAST: u64 = 10_000;
 /// Figures within this relative distance of each other are equal.
 pub const EQUAL_FIGURES: f64 = 1e-9;
 
@@ -136,7 +136,6 @@ pub struct Picks {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
     /// The evaluations of the objective that they cost beside the search.
-    #[serde(default)]
     pub evaluations: u64,
     /// The linkage of least extent. Its rank is that of the equal candidate, 0 if it is none of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -37,10 +37,7 @@ pub mod suite;
 pub use certificate::{Certificate, CertificatePart, Difference};
 pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
 pub use extras::{Alternative, Family, ON_BOUND_TEXT, Warning, WarningKind};
-pub use front::{
-    Axis, EQUAL_FIGURES, Figures, Front, LEAST_AXES, MOST_AXES, MOST_MEMBERS, Member, PICKS_LEAST,
-    PICKS_SHARE, Picks,
-};
+pub use front::{Axis, EQUAL_FIGURES, Figures, Front, LEAST_AXES, MOST_AXES, MOST_MEMBERS, Member, Picks};
 pub use limits::BeyondLimits;
 pub use pick::Pick;
 pub use repeats::Repeats;

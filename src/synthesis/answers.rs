@@ -4,6 +4,8 @@
 use super::buildable::buildable;
 use super::constants::buildable::{LEAST, SHARE};
 use super::{Context, SearchOutcome};
+use crate::judge::assess::{measure_curve, to_raw};
+use crate::judge::costs::marginal;
 use crate::judge::family::family;
 use crate::judge::symmetry::mirror_image_serves;
 use crate::judge::warnings::warnings;
@@ -24,6 +26,17 @@ pub struct Beside {
 pub fn annotate(problem: &Problem, candidate: &mut Candidate) {
     candidate.warnings = warnings(problem, candidate);
     candidate.mirror_serves = mirror_image_serves(problem, candidate);
+}
+
+/// Gives a linkage that is not among the ranked candidates all that a record says of it: its distances to the whole
+/// curve and to the points as they were given, the costs of its limits, and its annotations. It has no rank, no
+/// cognates beside it and no certificate.
+pub(super) fn complete(problem: &Problem, candidate: &mut Candidate) {
+    (candidate.rank, candidate.alternatives, candidate.certified) = (0, Vec::new(), None);
+    measure_curve(problem, candidate);
+    candidate.costs = marginal(problem, candidate);
+    candidate.error.to_raw = to_raw(problem, candidate);
+    annotate(problem, candidate);
 }
 
 /// Annotates the candidates and returns the family and the buildable candidate.

@@ -21,17 +21,14 @@ use super::constants::conflicts::{
 use super::multistart::{LONG_FIT, judged, polish};
 use super::relaxed::led_in;
 use super::{Context, Progress, SearchOutcome, offered_cognates, plan};
-use crate::judge::assess::measure_curve;
 use crate::judge::error::rms;
 use crate::judge::loosen::{Demand, changes, judged_under, rounded_outward};
-use crate::judge::rank::divided;
 use crate::judge::warm::start_at;
 use crate::numbers::optimise::population::PopulationError;
 use crate::record::{Candidate, Conflict, RELAXED, Relaxation};
 use crate::task::Problem;
 use crate::task::requirement::Limit;
 use crate::task::spec::{Method, ProblemSpec};
-use rayon::prelude::*;
 
 /// Distance from a bound, in parts of its scale, within which the bound is active.
 const ACTIVE: f64 = 1e-6;
@@ -78,11 +75,7 @@ pub fn explain(context: Context<'_>, outcome: &mut SearchOutcome) -> Result<Expl
     }
     // Where the problem asks for a method, only answers of that method are listed.
     if !met.is_empty() && problem.spec().solve.method == Method::Auto {
-        let mut found = std::mem::take(&mut outcome.candidates);
-        found.append(&mut outcome.others);
-        found.extend(met);
-        (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
-        outcome.candidates.par_iter_mut().for_each(|candidate| measure_curve(problem, candidate));
+        outcome.choose_anew(context, Vec::new(), met);
         offered_cognates::offer(context, &mut outcome.candidates);
         // The repeated hits were counted for another best answer.
         outcome.repeats = None;

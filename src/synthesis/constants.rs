@@ -318,6 +318,10 @@ pub mod picks {
     /// The step, in parts of the first, at which bisection ends; and most steps from one start.
     pub const LEAST_STEP: f64 = 0.1;
     pub const STEPS: usize = 10;
+    /// The smallest leaves one part in this many of the evaluations to the best transmitting one, and that one to the
+    /// fits without limits.
+    pub const FOR_TRANSMISSION: u64 = 2;
+    pub const FOR_LOOSENED: u64 = 8;
 }
 
 /// The front; chosen by `benches/front`.

@@ -9,7 +9,6 @@
 use super::{Context, Progress, SearchOutcome};
 use crate::judge::certified::{certified, nearly_exact, same, target};
 use crate::judge::exact_linkages::{Class, Depth, classes};
-use crate::judge::loosen::judged_under;
 use crate::judge::rank::{count_distinct, divided, holds_an_exact};
 use crate::numbers::nine_point;
 use crate::numbers::nine_point::certificate::{Certificate, certify, certify_all};
@@ -127,16 +126,7 @@ impl Exact {
     /// Returns the exact answers together with the outcome of a search by approximation.
     pub fn beside(self, context: Context<'_>, mut outcome: SearchOutcome) -> SearchOutcome {
         let problem = context.problem;
-        let mut found = self.candidates();
-        found.append(&mut outcome.candidates);
-        found.append(&mut outcome.others);
-        (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
-        // One of the others may have been judged at a glance.
-        for candidate in &mut outcome.candidates {
-            if let Some(judged) = judged_under(problem, candidate) {
-                candidate.error = judged.error;
-            }
-        }
+        outcome.choose_anew(context, self.candidates(), Vec::new());
         let reached = holds_an_exact(problem, &outcome.candidates);
         if reached && matches!(outcome.reason, Reason::Converged | Reason::Stalled) {
             outcome.reason = Reason::TargetReached;

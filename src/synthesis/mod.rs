@@ -79,8 +79,11 @@ pub mod variable_projection;
 pub use context::Context;
 pub use driver::Found;
 
+use crate::judge::assess::measure_curve;
+use crate::judge::rank::divided;
 use crate::mechanism::effort::is_stopped_by_a_test;
 use crate::record::{Candidate, Evaluations, ExactRecord, Reason, Repeats};
+use rayon::prelude::*;
 use std::ops::AddAssign;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -212,4 +215,29 @@ pub struct SearchOutcome {
     pub exact: Option<ExactRecord>,
     /// The repeated hits of the best answer, if they were counted.
     pub repeats: Option<Repeats>,
+}
+
+impl SearchOutcome {
+    /// Chooses the candidates anew from `before`, the outcome's own and `after`; of equal ones the first is chosen. Their
+    /// distances to their whole curves are computed anew, since those of unlisted ones are not exact. Once the budget
+    /// has stopped, only so many stay in the list as can be measured in a fraction of a second ([`Budget::judging`]).
+    pub(crate) fn choose_anew(
+        &mut self,
+        context: Context<'_>,
+        before: Vec<Candidate>,
+        after: Vec<Candidate>,
+    ) {
+        let problem = context.problem;
+        let own = self.candidates.drain(..).chain(self.others.drain(..));
+        let found = before.into_iter().chain(own).chain(after).collect();
+        let (best, others) = divided(problem, found, problem.spec().solve.candidates);
+        let judging = context.budget.judging(context.points());
+        let measured = |mut candidate| {
+            judging.may_go_on().then(|| {
+                measure_curve(problem, &mut candidate);
+                candidate
+            })
+        };
+        (self.candidates, self.others) = (best.into_par_iter().filter_map(measured).collect(), others);
+    }
 }

@@ -4,16 +4,18 @@
 //! is tightened step by step, and the linkage fitted again under it, for as long as the error stays within what is
 //! allowed; then the step is bisected. Linkages that cannot reach the best one so far in one fit are given up.
 
+use super::answers::complete;
 use super::belief::SAME_OPTIMUM;
-use super::constants::picks::{LEAST_STEP, STARTS, STEP_DEG, STEP_PART, STEPS, WAVE};
+use super::constants::picks::{
+    FOR_LOOSENED, FOR_TRANSMISSION, LEAST_STEP, STARTS, STEP_DEG, STEP_PART, STEPS, WAVE,
+};
 use super::multistart::{LONG_FIT, MIDDLE_FIT};
 use super::tightened::{Tightened, Tighter, fitted};
 use super::{Context, SearchOutcome, offered_cognates};
-use crate::judge::assess::{assess, measure_curve};
-use crate::judge::costs::marginal;
+use crate::judge::assess::assess;
+use crate::judge::cognates::COGNATES;
 use crate::judge::figures::extent;
-use crate::judge::rank::{chosen, divided, exact_objective};
-use crate::judge::warnings::warnings;
+use crate::judge::rank::{chosen, exact_objective};
 use crate::record::{Axis, Candidate, Picks};
 use crate::task::Problem;
 use crate::task::spec::{Method, Objective};
@@ -119,9 +121,7 @@ pub fn beside(context: Context<'_>, outcome: &mut SearchOutcome) -> Picked {
     let bar = outcome.candidates.first().map_or(f64::INFINITY, |best| best.error.objective);
     let least = bar - (SAME_OPTIMUM * bar).max(exact_objective(problem));
     if loosened.iter().any(|c| c.error.objective < least) {
-        let all = outcome.candidates.drain(..).chain(outcome.others.drain(..)).chain(loosened).collect();
-        (outcome.candidates, outcome.others) = divided(problem, all, solve.candidates);
-        outcome.candidates.par_iter_mut().for_each(|candidate| measure_curve(problem, candidate));
+        outcome.choose_anew(context, Vec::new(), loosened);
         offered_cognates::offer(context, &mut outcome.candidates);
         let again = picks(context, &outcome.candidates, &outcome.others, picked.left);
         (picked.picks, picked.left) = (again.picks, again.left);
@@ -144,13 +144,16 @@ fn picks(context: Context<'_>, ranked: &[Candidate], others: &[Candidate], allow
     let Some(best) = ranked.first().filter(|best| best.accepted) else { return picked };
     let allowed = Allowed::of(problem, best);
     let mut known: Vec<Candidate> = ranked.iter().chain(others).filter(|c| c.accepted).cloned().collect();
-    known.extend(ranked.iter().flat_map(|candidate| cognates(problem, candidate)));
+    let in_time = ranked.iter().filter(|_| context.budget.leaves_time_for(COGNATES * context.points()));
+    known.extend(in_time.flat_map(|candidate| cognates(problem, candidate)));
     let mut pick = |wish: Wish, reserved: u64| {
         let found = along(context, &allowed, wish, &known, &mut picked, reserved);
-        found.map(|candidate| completed(problem, ranked, candidate))
+        // Between two questions about a stop one pick is measured.
+        let measured = found.filter(|_| context.budget.leaves_time_for(context.points()));
+        measured.map(|candidate| completed(problem, ranked, candidate))
     };
-    let smallest = pick(Wish(Axis::Extent), allowance / 2);
-    let best_transmission = pick(Wish(Axis::Transmission), allowance / 8);
+    let smallest = pick(Wish(Axis::Extent), allowance / FOR_TRANSMISSION);
+    let best_transmission = pick(Wish(Axis::Transmission), allowance / FOR_LOOSENED);
     let within = allowed.shown(problem);
     picked.picks = Some(Picks { within, evaluations: 0, smallest, best_transmission });
     picked
@@ -162,16 +165,14 @@ fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
     accepted.filter_map(|other| assess(problem, &other.linkage, &other.crank_deg, &other.t1_at)).collect()
 }
 
-/// Gives a pick its rank among the candidates, its warnings and the costs of its limits.
+/// Returns the ranked candidate that is equal to a pick, or else the pick with all that a record says of it.
 fn completed(problem: &Problem, ranked: &[Candidate], mut pick: Candidate) -> Candidate {
     let equal =
         |c: &&Candidate| (c.linkage, &c.crank_deg, &c.t1_at) == (pick.linkage, &pick.crank_deg, &pick.t1_at);
     if let Some(same) = ranked.iter().find(equal) {
         return same.clone();
     }
-    pick.rank = 0;
-    pick.warnings = warnings(problem, &pick);
-    pick.costs = marginal(problem, &pick);
+    complete(problem, &mut pick);
     pick
 }
 

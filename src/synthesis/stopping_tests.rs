@@ -12,9 +12,9 @@ use std::sync::atomic::AtomicBool;
 
 /// Number of points of the targets: as many as need checks for a stop within a generation.
 const POINTS: usize = 1200;
-/// Greatest number of positions per point between two checks: the longest step is the judging of both picks, with their
+/// Greatest number of positions per point between two checks: the longest step is the judging of a candidate, with its
 /// distances to the whole curve and those of its cognates.
-const BETWEEN: u64 = 4000;
+const BETWEEN: u64 = 1500;
 /// Positions per point of one judged candidate with its alternatives.
 const JUDGED: u64 = 700;
 
@@ -52,8 +52,9 @@ fn counted(job: &Job, stop_at: Option<u64>) -> (Record, Counts) {
     })
 }
 
-/// Stops a job at so many of its questions, spread over the run.
-fn asks_often_enough(name: &str, job: &Job, stops: u64) {
+/// Stops a job at some of its questions, spread over the run; with `THOROUGH=1`, at more.
+fn asks_often_enough(name: &str, job: &Job) {
+    let stops = if std::env::var_os("THOROUGH").is_some() { 6 } else { 3 };
     let n = POINTS as u64;
     let (_, whole) = counted(job, None);
     assert!(whole.asked > 3, "{name}: {whole:?}");
@@ -78,17 +79,17 @@ fn asks_often_enough(name: &str, job: &Job, stops: u64) {
 #[test]
 fn a_search_by_least_squares_asks_about_a_stop_often_enough() {
     for (name, closed, timed) in [("closed", true, false), ("open", false, false)] {
-        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", "1200")]), 3);
+        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", "3000")]));
     }
     for (name, closed) in [("closed, timed", true), ("open, timed", false)] {
-        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", "1200")]), 3);
+        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", "3000")]));
     }
     let limits = [
-        ("solve.evaluations", "1200"),
+        ("solve.evaluations", "3000"),
         ("require.transmission_deg_min", "60"),
         ("require.footprint_in", "[-4, -4, 4, 4]"),
     ];
-    asks_often_enough("timed, with limits", &job(true, true, &limits), 3);
+    asks_often_enough("timed, with limits", &job(true, true, &limits));
 }
 
 #[test]
@@ -96,7 +97,7 @@ fn a_population_search_asks_about_a_stop_before_each_long_evaluation() {
     for method in ["genetic", "differential-evolution"] {
         for timed in [false, true] {
             let set = [("solve.method", method), ("solve.evaluations", "700"), ("solve.advice", "false")];
-            asks_often_enough(method, &job(true, timed, &set), 3);
+            asks_often_enough(method, &job(true, timed, &set));
         }
     }
 }

@@ -1,9 +1,8 @@
 //! One run: from a problem to its record. It joins the other modules.
 
 use crate::files::problem_file::ProblemFile;
-use crate::judge::assess::{measure_curve, to_raw};
+use crate::judge::assess::to_raw;
 use crate::judge::certificate;
-use crate::judge::costs::marginal;
 use crate::judge::rank::holds_an_exact;
 use crate::mechanism::Unit;
 use crate::numbers::optimise::population::PopulationError;
@@ -19,7 +18,6 @@ use crate::task::Problem;
 use crate::task::TaskError;
 use crate::task::forms::precision::{Refusal, precision_points};
 use crate::task::spec::{Method, ProblemSpec};
-use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -189,7 +187,7 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
         candidate.error.to_raw = to_raw(&problem, candidate);
     }
     outcome.reason = reached(&problem, &outcome);
-    let picks = picked.picks.map(|picks| settled(&problem, &outcome.candidates, picks));
+    let picks = picked.picks.map(|picks| settled(&outcome.candidates, picks));
     let front = job.front.as_ref().map(|request| fronted(inputs, request, &mut outcome, &picked.met));
     lap(&mut advice_s.front);
     let beside_s = start.elapsed().as_secs_f64() - search_s;
@@ -218,36 +216,24 @@ fn fronted(
 ) -> Front {
     let known: Vec<Candidate> =
         outcome.candidates.iter().chain(&outcome.others).chain(met).cloned().collect();
-    let mut found = front::search(context, request, &known, context.problem.spec().solve.evaluations);
+    let found = front::search(context, request, &known, context.problem.spec().solve.evaluations);
     outcome.evaluations += found.evaluations;
     outcome.reason = found.reason.unwrap_or(outcome.reason);
-    found.front.members.par_iter_mut().for_each(|member| annotate(context.problem, &mut member.candidate));
     found.front
 }
 
 /// Makes each pick equal to the candidate with the same linkage and crank angles, which has been annotated since it was
-/// picked; a pick that is none of them is annotated as candidates are.
-fn settled(problem: &Problem, candidates: &[Candidate], mut picks: Picks) -> Picks {
+/// picked.
+fn settled(candidates: &[Candidate], mut picks: Picks) -> Picks {
     for pick in picks.smallest.iter_mut().chain(&mut picks.best_transmission) {
         let is_it = |c: &&Candidate| {
             (c.linkage, &c.crank_deg, &c.t1_at) == (pick.linkage, &pick.crank_deg, &pick.t1_at)
         };
-        match candidates.iter().find(is_it) {
-            Some(same) => *pick = same.clone(),
-            None => annotate(problem, pick),
+        if let Some(same) = candidates.iter().find(is_it) {
+            *pick = same.clone();
         }
     }
     picks
-}
-
-/// Gives a linkage that is not among the ranked candidates its warnings, the costs of its limits, and its distance from
-/// the points as they were given.
-fn annotate(problem: &Problem, candidate: &mut Candidate) {
-    (candidate.rank, candidate.alternatives, candidate.certified) = (0, Vec::new(), None);
-    measure_curve(problem, candidate);
-    candidate.costs = marginal(problem, candidate);
-    candidate.error.to_raw = to_raw(problem, candidate);
-    answers::annotate(problem, candidate);
 }
 
 /// Returns the reason why a search ended, consistent with its list: a target is reached only if an accepted candidate of

@@ -18,6 +18,7 @@
 mod archive;
 mod targets;
 
+use super::answers::complete;
 use super::constants::front::{
     ANSWERS, EFFORT, FITS, LAST, LEAST_MEMBERS, MOST_ERROR, QUIET_GENERATIONS, QUIET_VOLUME, SEARCH, SEEDS,
     SPARE,
@@ -325,10 +326,11 @@ impl<'a> Search<'a> {
         places.sort_by(|&i, &j| list[i].rms.total_cmp(&list[j].rms).then(i.cmp(&j)));
         let chosen: Vec<Figures> = places.iter().map(|&i| list[i]).collect();
         let knees = knees(axes, &chosen);
-        let members = places.iter().zip(chosen).zip(knees).map(|((&i, figures), knee)| Member {
-            figures,
-            knee,
-            candidate: self.archive.members()[i].0.candidate.clone(),
+        let judging = self.context.budget.judging(self.context.points());
+        let members = places.par_iter().zip(chosen).zip(knees).filter_map(|((&i, figures), knee)| {
+            let mut candidate = judging.may_go_on().then(|| self.archive.members()[i].0.candidate.clone())?;
+            complete(self.context.problem, &mut candidate);
+            Some(Member { figures, knee, candidate })
         });
         let front = Front {
             axes: axes.clone(),
