@@ -18,7 +18,7 @@ use std::fs;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Returns how many leaves of each key in each record are changed, evenly taken from all.
-fn some() -> usize {
+fn leaves_of_a_key() -> usize {
     if is_thorough() { 2 } else { 1 }
 }
 
@@ -233,7 +233,7 @@ fn some(changes: Vec<Change>) -> Vec<Change> {
         by_key.entry(change.key.clone()).or_default().entry(at).or_default().push(change);
     }
     let few = |leaves: BTreeMap<String, Vec<Change>>| {
-        let every = leaves.len().div_ceil(some());
+        let every = leaves.len().div_ceil(leaves_of_a_key());
         leaves.into_values().step_by(every).flatten().collect::<Vec<_>>()
     };
     by_key.into_values().flat_map(few).collect()
