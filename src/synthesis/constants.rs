@@ -129,6 +129,10 @@ pub mod free {
     pub const NOISE_HITS: usize = 4;
     /// Least number of batches for a sparse target.
     pub const LEAST_BATCHES: u64 = 5;
+    /// Independent rounds that came to the best error of a sparse target, and their part of all rounds, from which fewer
+    /// batches are enough.
+    pub const AGREED: usize = 7;
+    pub const AGREED_PART: f64 = 0.75;
     /// Batches in which a round on a dense target fits only its best start further.
     pub const DENSE_BATCHES: u64 = 2;
     /// Least number of batches for a dense target whose errors are small and not noise.
@@ -163,6 +167,12 @@ pub mod free {
     /// unless the errors are noise.
     pub const CORNERS_EVERY: u64 = 4;
     pub const CORNERS_AT: u64 = 2;
+    /// Of `STRICT_EVERY` batches on a dense target one explores linkages with at least this worst transmission angle, and
+    /// one linkages whose crank turns fully, unless the errors are noise.
+    pub const STRICT_EVERY: u64 = 8;
+    pub const STRICT_AT: u64 = 3;
+    pub const STRICT_DEG: f64 = 30.0;
+    pub const TURNING_AT: u64 = 7;
     /// Batches without a new distinct answer that end a search for further ones.
     pub const QUIET_BATCHES: u64 = 6;
     /// Number of ends kept.

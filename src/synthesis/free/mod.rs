@@ -6,7 +6,9 @@
 //! `MIDDLE` of those further, and finishes those that can still matter.
 //!
 //! Dense targets are explored in groups of points ([`super::coarse`]); now and then all points are explored, or one point
-//! of each group, to find detail that the groups' means blur. The correspondence between the points and the curve is recomputed for their ends
+//! of each group, to find detail that the groups' means blur, or the groups under a stricter transmission angle or with a
+//! crank that turns fully: their ends are finished without that, so that a looser problem meets the answers of a tighter
+//! one. The correspondence between the points and the curve is recomputed for their ends
 //! (`reassign`), and these are fitted again for as long as that gains. The ends of a batch are finished on all points
 //! after it, each of them once however many rounds reached it. Ends whose points have strayed to a circuit or branch
 //! that the referee will refuse are led back (`required`). Rounds run in parallel in batches of `BATCH` and are read in
@@ -17,7 +19,7 @@
 //! reached the best error within `SAME_OPTIMUM`, or four or more times as many within `NEARLY`, for an optimum that is
 //! approached and hardly reached; and either as many distinct answers as were asked for are known or `QUIET_BATCHES`
 //! batches brought no new one. Sparse targets are searched through `LEAST_BATCHES` batches at least, so that rounds
-//! near known ends get their turn. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
+//! near known ends get their turn, unless `AGREED` rounds and a part of `AGREED_PART` of all came to the best error. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
 //! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough. If neighbouring residuals are
 //! correlated, the linkage misses a shape that another linkage may have. The search then ends when the error has kept
 //! its level (within a factor `LEVEL`) for several times as many evaluations as it took to reach it: `LEVEL_TIMES` if
@@ -36,13 +38,14 @@ use super::starts::Starts;
 use super::states::{Counts, End, FreeState, Level, SearchState, StageState};
 use super::{Context, HitsSoFar, repeats};
 use crate::judge::rank::{exact_cost, searched};
-use crate::mechanism::dot;
+use crate::mechanism::{LinkageType, dot};
 use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Candidate;
 use crate::synthesis::constants::free::{
-    ALIKE, BATCH, CORNERS_AT, CORNERS_EVERY, IN_NOISE, KEPT, LEAST_BATCHES, LEVEL, LEVEL_HITS, LEVEL_LEAST,
-    LEVEL_TIMES, MANY_HITS, MANY_LEAST, NOISE_HITS, NOISE_LEAST, PATIENT_BATCHES, QUIET_BATCHES, QUIET_LEAST,
-    QUIET_TIMES, SMALL, WHOLE_ELSE, WHOLE_EVERY, WHOLE_IN_NOISE, WHOLE_MOST,
+    AGREED, AGREED_PART, ALIKE, BATCH, CORNERS_AT, CORNERS_EVERY, IN_NOISE, KEPT, LEAST_BATCHES, LEVEL,
+    LEVEL_HITS, LEVEL_LEAST, LEVEL_TIMES, MANY_HITS, MANY_LEAST, NOISE_HITS, NOISE_LEAST, PATIENT_BATCHES,
+    QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICT_AT, STRICT_DEG, STRICT_EVERY, TURNING_AT,
+    WHOLE_ELSE, WHOLE_EVERY, WHOLE_IN_NOISE, WHOLE_MOST,
 };
 use crate::task::Problem;
 use batch::Batch;
@@ -72,12 +75,56 @@ fn likeness(problem: &Problem, candidate: &Candidate) -> f64 {
     if whole > 0.0 { alike / whole } else { 1.0 }
 }
 
+/// What a stage explores.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Explored {
+    /// The groups' means, or all points of a sparse target.
+    First,
+    /// All points of a dense target.
+    Whole,
+    /// One point of each group.
+    Corners,
+    /// The groups' means under a stricter transmission angle.
+    Strict,
+    /// The groups' means with a crank that turns fully.
+    Turning,
+}
+
+/// A problem to explore, with its starts; all points if there is no coarse one.
+#[derive(Clone, Copy)]
+struct Exploration<'a> {
+    explored: Explored,
+    coarse: Option<&'a Coarse>,
+    starts: &'a Starts<'a>,
+}
+
+/// Returns the coarse problem of a dense target with the transmission angle [`STRICT_DEG`] at least; `None` if that or
+/// more is asked for already.
+fn strict(problem: &Problem) -> Option<Coarse> {
+    let mut spec = problem.spec().clone();
+    let asked = spec.require.transmission_deg_min.replace(STRICT_DEG);
+    if asked.is_some_and(|asked| asked >= STRICT_DEG) {
+        return None;
+    }
+    Coarse::of(&problem.with(spec).ok()?)
+}
+
+/// Returns the coarse problem of a dense target whose crank turns fully; `None` if types are asked for.
+fn turning(problem: &Problem) -> Option<Coarse> {
+    let mut spec = problem.spec().clone();
+    if !spec.require.types.is_empty() {
+        return None;
+    }
+    spec.require.types = vec![LinkageType::CrankRocker, LinkageType::DoubleCrank];
+    Coarse::of(&problem.with(spec).ok()?)
+}
+
 /// The search with its state.
 struct Free<'a> {
     problem: &'a Problem,
     coarse: Option<&'a Coarse>,
-    corners: Option<(&'a Coarse, &'a Starts<'a>)>,
-    whole: &'a Starts<'a>,
+    /// What can be explored, in the order in which stages begin.
+    explorations: Vec<Exploration<'a>>,
     /// Number of distinct answers wanted.
     wanted: usize,
     exact: f64,
@@ -91,23 +138,42 @@ struct Free<'a> {
 /// Searches until the best is believed, the limit is reached, or the patience is at an end.
 pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found> {
     let problem = context.problem;
-    let coarse = Coarse::of(problem);
+    let (coarse, corners) = (Coarse::of(problem), Coarse::of_corners(problem));
+    let (strict, turning) = (strict(problem), turning(problem));
     let whole = Starts::new(problem);
-    let grouped = coarse.as_ref().map(|coarse| Starts::new(&coarse.problem));
-    let corners = Coarse::of_corners(problem);
-    let of_corners = corners.as_ref().map(|corners| Starts::new(&corners.problem));
+    let [of_groups, of_corners, of_strict, of_turning] =
+        [&coarse, &corners, &strict, &turning].map(|coarse| Some(Starts::new(&coarse.as_ref()?.problem)));
+    let mut explorations = vec![Exploration {
+        explored: Explored::First,
+        coarse: coarse.as_ref(),
+        starts: of_groups.as_ref().unwrap_or(&whole),
+    }];
+    if coarse.is_some() && problem.task().len() <= WHOLE_MOST {
+        explorations.push(Exploration { explored: Explored::Whole, coarse: None, starts: &whole });
+    }
+    for (explored, coarse, starts) in [
+        (Explored::Corners, &corners, &of_corners),
+        (Explored::Strict, &strict, &of_strict),
+        (Explored::Turning, &turning, &of_turning),
+    ] {
+        let both = coarse.as_ref().zip(starts.as_ref());
+        explorations.extend(both.map(|(coarse, starts)| Exploration {
+            explored,
+            coarse: Some(coarse),
+            starts,
+        }));
+    }
     let mut free = Free {
         problem,
         coarse: coarse.as_ref(),
-        corners: corners.as_ref().zip(of_corners.as_ref()),
-        whole: &whole,
+        explorations,
         wanted: basins_wanted(problem),
         exact: exact_cost(problem),
         setups: Vec::new(),
         at: FreeState::default(),
         best: None,
     };
-    free.begin_stage(coarse.as_ref(), grouped.as_ref().unwrap_or(&whole));
+    free.begin_next_stage();
     let points = coarse.as_ref().map_or(problem.task().len(), |coarse| coarse.problem.task().len());
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().free.clone());
     if let Some(state) = earlier.filter(|state| state.is_of(problem, points)) {
@@ -127,41 +193,31 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
 }
 
 impl<'a> Free<'a> {
-    fn begin_stage(&mut self, coarse: Option<&'a Coarse>, starts: &'a Starts<'a>) {
+    /// Begins the next stage that has not begun.
+    fn begin_next_stage(&mut self) {
+        let Exploration { coarse, starts, .. } = self.explorations[self.setups.len()];
         let matches = (starts.arc.len() >= LEAST_MATCHED).then(|| Matches::of(starts));
         let (problem, single, exact) = (self.problem, self.wanted == 1, self.exact);
         self.setups.push(Setup { problem, coarse, starts, matches, single, exact });
         self.at.stages.push(StageState::BEGUN);
     }
 
-    /// Returns whether all points are explored now and then: groups of few points.
-    fn has_whole(&self) -> bool {
-        self.coarse.is_some() && self.problem.task().len() <= WHOLE_MOST
-    }
-
-    /// Begins the stage on all points, or, if that has begun or there is none, the one on the points of the groups.
-    fn begin_next_stage(&mut self) {
-        match self.corners {
-            Some((corners, starts)) if self.setups.len() > usize::from(self.has_whole()) => {
-                self.begin_stage(Some(corners), starts);
-            }
-            _ => self.begin_stage(None, self.whole),
-        }
-    }
-
     /// Returns the index of the stage of the next batch: now and then all points are explored, or one point of each
-    /// group, to find detail that grouping blurs.
+    /// group, to find detail that grouping blurs, or the groups under a stricter requirement, to find linkages to which
+    /// starts without it seldom lead.
     fn next_stage(&mut self) -> usize {
         let is_noise = is_noise(self.problem, &self.at.ends);
         let batch = self.at.counts.batch;
         let on_all_at = if is_noise { WHOLE_IN_NOISE } else { WHOLE_ELSE };
-        let on_all = self.has_whole() && batch % WHOLE_EVERY == on_all_at;
-        let on_corners = !is_noise && self.corners.is_some() && batch % CORNERS_EVERY == CORNERS_AT;
-        let stage = match (on_all, on_corners) {
-            (true, _) => 1,
-            (_, true) => 1 + usize::from(self.has_whole()),
-            _ => 0,
-        };
+        let wanted = [
+            (Explored::Whole, batch % WHOLE_EVERY == on_all_at),
+            (Explored::Corners, !is_noise && batch % CORNERS_EVERY == CORNERS_AT),
+            (Explored::Strict, !is_noise && batch % STRICT_EVERY == STRICT_AT),
+            (Explored::Turning, !is_noise && batch % STRICT_EVERY == TURNING_AT),
+        ];
+        let place = |explored: Explored| self.explorations.iter().position(|e| e.explored == explored);
+        let stage = wanted.into_iter().filter(|(_, now)| *now).find_map(|(explored, _)| place(explored));
+        let stage = stage.unwrap_or(0);
         while self.setups.len() <= stage {
             self.begin_next_stage();
         }
@@ -223,6 +279,12 @@ impl<'a> Free<'a> {
 
     fn hits_wanted(&self) -> FreeHits {
         if self.coarse.is_some() { DENSE_HITS } else { SPARSE_HITS }
+    }
+
+    /// Returns whether most independent rounds came to an error.
+    fn is_agreed(&self, error: f64) -> bool {
+        let came = self.within(error, SAME_OPTIMUM);
+        came >= AGREED && came as f64 >= AGREED_PART * self.at.best_merits.len() as f64
     }
 
     /// Returns the number of independent rounds within a relative distance `part` of an error.
@@ -289,7 +351,7 @@ impl Strategy for Free<'_> {
         let batches = self.at.counts.batch;
         let ripe = match self.coarse {
             _ if is_exact => believed,
-            None => believed && batches >= LEAST_BATCHES,
+            None => believed && (batches >= LEAST_BATCHES || self.is_agreed(error)),
             Some(_) if is_noise && error > self.cost_of(NOISE_LEAST) => believed,
             Some(_) => {
                 let spent = self.at.evaluations.objective;

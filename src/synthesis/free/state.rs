@@ -18,8 +18,9 @@ impl FreeState {
         let n = problem.task().len();
         let stages = self.stages.len();
         let whole = (points != n && n <= WHOLE_MOST).then_some(n);
-        let corners = (points != n).then_some(points);
-        let all: Vec<usize> = [Some(points), whole, corners].into_iter().flatten().collect();
+        let grouped = (points != n).then_some(points);
+        let all: Vec<usize> =
+            [Some(points), whole, grouped, grouped, grouped].into_iter().flatten().collect();
         let possible = (1..=all.len()).contains(&stages);
         let mut explored = self.stages.iter().zip(all);
         possible
