@@ -129,10 +129,6 @@ pub mod free {
     pub const NOISE_HITS: usize = 4;
     /// Least number of batches for a sparse target.
     pub const LEAST_BATCHES: u64 = 5;
-    /// Independent rounds that came to the best error of a sparse target, and their part of all rounds, from which fewer
-    /// batches are enough.
-    pub const AGREED: usize = 7;
-    pub const AGREED_PART: f64 = 0.75;
     /// Batches in which a round on a dense target fits only its best start further.
     pub const DENSE_BATCHES: u64 = 2;
     /// Least number of batches for a dense target whose errors are small and not noise.

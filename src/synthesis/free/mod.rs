@@ -19,7 +19,7 @@
 //! reached the best error within `SAME_OPTIMUM`, or four or more times as many within `NEARLY`, for an optimum that is
 //! approached and hardly reached; and either as many distinct answers as were asked for are known or `QUIET_BATCHES`
 //! batches brought no new one. Sparse targets are searched through `LEAST_BATCHES` batches at least, so that rounds
-//! near known ends get their turn, unless `AGREED` rounds and a part of `AGREED_PART` of all came to the best error. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
+//! near known ends get their turn. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
 //! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough. If neighbouring residuals are
 //! correlated, the linkage misses a shape that another linkage may have. The search then ends when the error has kept
 //! its level (within a factor `LEVEL`) for several times as many evaluations as it took to reach it: `LEVEL_TIMES` if
@@ -42,10 +42,10 @@ use crate::mechanism::{LinkageType, dot};
 use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Candidate;
 use crate::synthesis::constants::free::{
-    AGREED, AGREED_PART, ALIKE, BATCH, CORNERS_AT, CORNERS_EVERY, IN_NOISE, KEPT, LEAST_BATCHES, LEVEL,
-    LEVEL_HITS, LEVEL_LEAST, LEVEL_TIMES, MANY_HITS, MANY_LEAST, NOISE_HITS, NOISE_LEAST, PATIENT_BATCHES,
-    QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICT_AT, STRICT_DEG, STRICT_EVERY, TURNING_AT,
-    WHOLE_ELSE, WHOLE_EVERY, WHOLE_IN_NOISE, WHOLE_MOST,
+    ALIKE, BATCH, CORNERS_AT, CORNERS_EVERY, IN_NOISE, KEPT, LEAST_BATCHES, LEVEL, LEVEL_HITS, LEVEL_LEAST,
+    LEVEL_TIMES, MANY_HITS, MANY_LEAST, NOISE_HITS, NOISE_LEAST, PATIENT_BATCHES, QUIET_BATCHES, QUIET_LEAST,
+    QUIET_TIMES, SMALL, STRICT_AT, STRICT_DEG, STRICT_EVERY, TURNING_AT, WHOLE_ELSE, WHOLE_EVERY,
+    WHOLE_IN_NOISE, WHOLE_MOST,
 };
 use crate::task::Problem;
 use batch::Batch;
@@ -281,12 +281,6 @@ impl<'a> Free<'a> {
         if self.coarse.is_some() { DENSE_HITS } else { SPARSE_HITS }
     }
 
-    /// Returns whether most independent rounds came to an error.
-    fn is_agreed(&self, error: f64) -> bool {
-        let came = self.within(error, SAME_OPTIMUM);
-        came >= AGREED && came as f64 >= AGREED_PART * self.at.best_merits.len() as f64
-    }
-
     /// Returns the number of independent rounds within a relative distance `part` of an error.
     fn within(&self, error: f64, part: f64) -> usize {
         let merits = self.at.best_merits.iter().map(|merit| merit.0);
@@ -351,7 +345,7 @@ impl Strategy for Free<'_> {
         let batches = self.at.counts.batch;
         let ripe = match self.coarse {
             _ if is_exact => believed,
-            None => believed && (batches >= LEAST_BATCHES || self.is_agreed(error)),
+            None => believed && batches >= LEAST_BATCHES,
             Some(_) if is_noise && error > self.cost_of(NOISE_LEAST) => believed,
             Some(_) => {
                 let spent = self.at.evaluations.objective;
