@@ -8,6 +8,7 @@
 //!     --evaluations N     budget of a search (200000)
 //!     --candidates N      number of answers asked for (1)
 //!     --threads N         of a search (1)
+//!     --ladder            search under more and more requirements in place of the table: is a looser problem ever worse?
 //!     --reference FILE    compare with the references in this JSON file; those that it lacks are searched and added
 //!     --reference-seeds N         searches for a reference, of seeds 1 to N (20)
 //!     --reference-evaluations N   budget of each (200000)
@@ -28,6 +29,7 @@
 
 use linkwright::internals::app::job::run::{Context, Finished, Job, run};
 use linkwright::internals::files::problem_file::load_any;
+use linkwright::internals::mechanism::LinkageType;
 use linkwright::internals::record::{Candidate, MET_TOLERANCE, Reason};
 use linkwright::internals::task::spec::{ProblemSpec, SolveSpec};
 use serde::{Deserialize, Serialize};
@@ -45,6 +47,8 @@ const REFERENCE_CANDIDATES: usize = 5;
 const NEAR: f64 = 1.02;
 /// The same for a search that says it has found the best.
 const BELIEVED: f64 = 1.01;
+/// The error of a looser problem over that of a tighter one up to which it is not worse.
+const NEVER_WORSE: f64 = 1.001;
 
 struct Arguments {
     filter: String,
@@ -52,6 +56,7 @@ struct Arguments {
     evaluations: u64,
     candidates: usize,
     threads: usize,
+    ladder: bool,
     reference: Option<PathBuf>,
     reference_seeds: u64,
     reference_evaluations: u64,
@@ -67,6 +72,7 @@ impl Arguments {
             evaluations: budget,
             candidates: 1,
             threads: 1,
+            ladder: false,
             reference: None,
             reference_seeds: SEEDS,
             reference_evaluations: budget,
@@ -77,6 +83,7 @@ impl Arguments {
             let mut value = || words.next().unwrap_or_else(|| panic!("{word} needs a value"));
             match word.as_str() {
                 "--bench" => {}
+                "--ladder" => arguments.ladder = true,
                 "--seed" => arguments.seed = value().parse().expect("a whole number"),
                 "--evaluations" => arguments.evaluations = value().parse().expect("a whole number"),
                 "--candidates" => arguments.candidates = value().parse().expect("a whole number"),
@@ -122,9 +129,39 @@ fn strokes(filter: &str) -> Vec<Stroke> {
     found
 }
 
+/// The requirements of the ladder, each beside those before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Rung {
+    Nothing,
+    /// A crank that turns fully.
+    Type,
+    /// A transmission angle of 30 degrees.
+    Transmission,
+    /// A footprint within 1.5 sizes of the target's centre.
+    Footprint,
+}
+
+impl Rung {
+    const ALL: [Rung; 4] = [Rung::Nothing, Rung::Type, Rung::Transmission, Rung::Footprint];
+
+    fn asks(self, spec: &mut ProblemSpec) {
+        if self >= Rung::Type {
+            spec.require.types = vec![LinkageType::CrankRocker, LinkageType::DoubleCrank];
+        }
+        if self >= Rung::Transmission {
+            spec.require.transmission_deg_min = Some(30.0);
+        }
+        if self >= Rung::Footprint {
+            let (reach, [x, y]) = (1.5 * size(spec), [0, 1].map(|k| middle(spec, k)));
+            spec.require.footprint_in = Some([x - reach, y - reach, x + reach, y + reach]);
+        }
+    }
+}
+
 /// The settings of one search.
 #[derive(Clone, Copy)]
 struct Search {
+    rung: Rung,
     seed: u64,
     evaluations: u64,
     candidates: usize,
@@ -135,10 +172,21 @@ struct Search {
 /// Returns the diagonal of the points' bounding box.
 fn size(spec: &ProblemSpec) -> f64 {
     let extent = |k: usize| {
-        let values = spec.task.path.points.iter().map(|p| p[k]);
-        values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
+        let [least, most] = range(spec, k);
+        most - least
     };
     extent(0).hypot(extent(1))
+}
+
+/// Returns the middle of the points' bounding box in x (0) or y (1).
+fn middle(spec: &ProblemSpec, k: usize) -> f64 {
+    range(spec, k).iter().sum::<f64>() / 2.0
+}
+
+/// Returns the least and the greatest x (0) or y (1) of the points.
+fn range(spec: &ProblemSpec, k: usize) -> [f64; 2] {
+    let values = spec.task.path.points.iter().map(|p| p[k]);
+    [values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max)]
 }
 
 /// Returns the length of the longest of ground, a, b, c, d and e.
@@ -166,6 +214,7 @@ impl Outcome {
         let mut file = load_any(&stroke.file, &set).unwrap_or_else(|why| panic!("{}: {why}", stroke.name));
         let size = size(&file.spec);
         file.spec.require.longest_max = search.limited.then_some(LONGEST * size);
+        search.rung.asks(&mut file.spec);
         let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
         let finished = run(&Job::from(file), &context).expect("it runs");
         let outcome = Outcome { finished, size };
@@ -232,7 +281,8 @@ impl References<'_> {
         let error = |r: &Reference| r.rms_over_size.unwrap_or(f64::INFINITY);
         let of_seeds = (1..=with.reference_seeds).map(|seed| {
             let (budget, candidates) = (with.reference_evaluations, with.reference_candidates);
-            let search = Search { seed, evaluations: budget, candidates, limited: true, advice: false };
+            let rung = Rung::Nothing;
+            let search = Search { rung, seed, evaluations: budget, candidates, limited: true, advice: false };
             let outcome = Outcome::of(stroke, search);
             Reference {
                 rms_over_size: outcome.rms_over_size(),
@@ -349,13 +399,40 @@ fn summary(rows: &[Row]) {
     }
 }
 
+/// Searches each stroke under more and more requirements, and counts the strokes of which no looser problem has a worse
+/// answer than a tighter one.
+fn ladder(strokes: &[Stroke], search: Search) {
+    println!("| stroke | nothing % | type % | 30 degrees % | footprint % | worst of a looser one |");
+    println!("|---|---|---|---|---|---|");
+    let mut kept = 0;
+    for stroke in strokes {
+        let errors = Rung::ALL.map(|rung| {
+            let outcome = Outcome::of(stroke, Search { rung, ..search });
+            outcome.rms_over_size().unwrap_or(f64::INFINITY)
+        });
+        let tighter = |i: usize| errors[i..].iter().copied().fold(f64::INFINITY, f64::min);
+        let ratios = (0..errors.len()).filter(|&i| tighter(i).is_finite()).map(|i| errors[i] / tighter(i));
+        let worst = ratios.fold(1.0, f64::max);
+        kept += usize::from(worst <= NEVER_WORSE);
+        let [nothing, types, transmission, footprint] =
+            errors.map(|error| if error.is_finite() { format!("{:.4}", 100.0 * error) } else { "-".into() });
+        println!("| {} | {nothing} | {types} | {transmission} | {footprint} | {worst:.4} |", stroke.name);
+    }
+    println!();
+    println!("a looser problem never worse than {NEVER_WORSE} of a tighter one: {kept} of {}", strokes.len());
+}
+
 fn main() {
     let arguments = Arguments::read();
     let strokes = strokes(&arguments.filter);
     assert!(!strokes.is_empty(), "no stroke is called {}", arguments.filter);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build().expect("threads");
     let Arguments { seed, evaluations, candidates, .. } = arguments;
-    let limited = Search { seed, evaluations, candidates, limited: true, advice: true };
+    let limited = Search { rung: Rung::Nothing, seed, evaluations, candidates, limited: true, advice: true };
+    if arguments.ladder {
+        pool.install(|| ladder(&strokes, limited));
+        return;
+    }
     let free = Search { limited: false, advice: false, ..limited };
     let mut references = arguments.reference.as_deref().map(References::read);
     println!(

@@ -48,6 +48,7 @@ use crate::synthesis::constants::free::{
     WHOLE_IN_NOISE, WHOLE_MOST,
 };
 use crate::task::Problem;
+use crate::task::spec::{OnePolicy, RequireSpec};
 use batch::Batch;
 use round::Setup;
 
@@ -98,25 +99,24 @@ struct Exploration<'a> {
     starts: &'a Starts<'a>,
 }
 
-/// Returns the coarse problem of a dense target with the transmission angle [`STRICT_DEG`] at least; `None` if that or
-/// more is asked for already.
-fn strict(problem: &Problem) -> Option<Coarse> {
-    let mut spec = problem.spec().clone();
-    let asked = spec.require.transmission_deg_min.replace(STRICT_DEG);
-    if asked.is_some_and(|asked| asked >= STRICT_DEG) {
-        return None;
+/// Returns two stricter problems of a dense target, each coarse: with the transmission angle [`STRICT_DEG`] at least, and
+/// with a crank that turns fully. `None` for one that is asked for already; for both if the motion may pass toggles,
+/// which neither of them does.
+fn stricter(problem: &Problem) -> [Option<Coarse>; 2] {
+    let with = |change: &dyn Fn(&mut RequireSpec)| {
+        let mut spec = problem.spec().clone();
+        change(&mut spec.require);
+        Coarse::of(&problem.with(spec).ok()?)
+    };
+    let require = &problem.spec().require;
+    if require.branch == OnePolicy::Any || !Coarse::is_for(problem) {
+        return [None, None];
     }
-    Coarse::of(&problem.with(spec).ok()?)
-}
-
-/// Returns the coarse problem of a dense target whose crank turns fully; `None` if types are asked for.
-fn turning(problem: &Problem) -> Option<Coarse> {
-    let mut spec = problem.spec().clone();
-    if !spec.require.types.is_empty() {
-        return None;
-    }
-    spec.require.types = vec![LinkageType::CrankRocker, LinkageType::DoubleCrank];
-    Coarse::of(&problem.with(spec).ok()?)
+    let is_strict = require.transmission_deg_min.is_some_and(|asked| asked >= STRICT_DEG);
+    let strict = if is_strict { None } else { with(&|r| r.transmission_deg_min = Some(STRICT_DEG)) };
+    let turning = vec![LinkageType::CrankRocker, LinkageType::DoubleCrank];
+    let turning = if require.types.is_empty() { with(&|r| r.types.clone_from(&turning)) } else { None };
+    [strict, turning]
 }
 
 /// The search with its state.
@@ -139,7 +139,7 @@ struct Free<'a> {
 pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found> {
     let problem = context.problem;
     let (coarse, corners) = (Coarse::of(problem), Coarse::of_corners(problem));
-    let (strict, turning) = (strict(problem), turning(problem));
+    let [strict, turning] = stricter(problem);
     let whole = Starts::new(problem);
     let [of_groups, of_corners, of_strict, of_turning] =
         [&coarse, &corners, &strict, &turning].map(|coarse| Some(Starts::new(&coarse.as_ref()?.problem)));
