@@ -324,6 +324,10 @@ pub mod picks {
     /// The step, in parts of the first, at which bisection ends; and most steps from one start.
     pub const LEAST_STEP: f64 = 0.1;
     pub const STEPS: usize = 10;
+    /// Differences of the logarithm of the extent, and of the transmission angle in degrees, up to which they are the same:
+    /// less than `verify` tells apart.
+    pub const SAME_PART: f64 = 5e-7;
+    pub const SAME_DEG: f64 = 5e-5;
     /// The smallest leaves one part in this many of the evaluations to the best transmitting one, and that one to the
     /// fits without limits.
     pub const FOR_TRANSMISSION: u64 = 2;

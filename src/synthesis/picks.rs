@@ -7,7 +7,7 @@
 use super::answers::complete;
 use super::belief::SAME_OPTIMUM;
 use super::constants::picks::{
-    FOR_LOOSENED, FOR_TRANSMISSION, LEAST_STEP, STARTS, STEP_DEG, STEP_PART, STEPS, WAVE,
+    FOR_LOOSENED, FOR_TRANSMISSION, LEAST_STEP, SAME_DEG, SAME_PART, STARTS, STEP_DEG, STEP_PART, STEPS, WAVE,
 };
 use super::multistart::{LONG_FIT, MIDDLE_FIT};
 use super::tightened::{Tightened, Tighter, fitted};
@@ -89,6 +89,11 @@ impl Wish {
             Axis::Extent => Tighter::default().with(Axis::Extent, (-merit).exp()),
             _ => Tighter::default().with(Axis::Transmission, merit.min(90.0)),
         }
+    }
+
+    /// Returns the difference of merits up to which they are the same.
+    fn same(self) -> f64 {
+        if self.0 == Axis::Extent { SAME_PART } else { SAME_DEG }
     }
 
     /// Returns the first step, in units of the merit.
@@ -188,8 +193,9 @@ fn along(
     let problem = context.problem;
     let within: Vec<&Candidate> = known.iter().filter(|c| allowed.holds(c)).collect();
     let merits: Vec<f64> = within.iter().map(|c| wish.merit(problem, c)).collect();
-    // Of equal ones the first.
-    let first = (0..within.len()).reduce(|best, i| if merits[i] > merits[best] { i } else { best })?;
+    // Of equal ones the first: cognates of one linkage have the same angles but for rounding.
+    let same = wish.same();
+    let first = (0..within.len()).reduce(|best, i| if merits[i] > merits[best] + same { i } else { best })?;
     let mut best = (merits[first], within[first].clone());
     let mut starts: Vec<&Candidate> = vec![within[first]];
     starts.extend(chosen(problem, known, STARTS).into_iter().map(|i| &known[i]));
@@ -205,7 +211,7 @@ fn along(
             picked.left -= end.evaluations.min(picked.left);
             picked.met.extend(end.met.iter().cloned());
             if let Some((merit, candidate)) = end.best
-                && merit > best.0
+                && merit > best.0 + same
             {
                 best = (merit, candidate);
             }
