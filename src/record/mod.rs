@@ -66,7 +66,7 @@ pub struct Record {
     pub method: MethodRecord,
     /// Why the search ended.
     pub termination: Termination,
-    /// What it cost.
+    /// The evaluations that the run cost.
     pub evaluations: Evaluations,
     /// Said where the answers are members of a whole family of exact answers.
     #[serde(default, skip_serializing_if = "Option::is_none")]

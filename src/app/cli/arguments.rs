@@ -83,6 +83,20 @@ pub enum Command {
     },
 }
 
+/// Options of a search, in `synth` and `front`.
+#[derive(Debug, Args)]
+pub struct SearchOptions {
+    /// The seed of every draw: as `--set solve.seed=..`
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    pub seed: Option<u64>,
+    /// Threads [default: all cores]; they change the time, never a digit
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Keep where a search stands not more often than this; 0: at every boundary, whatever it costs
+    #[arg(long, value_name = "SECONDS", default_value = "1", allow_negative_numbers = true, value_parser = seconds)]
+    pub checkpoint_every: Duration,
+}
+
 /// Options of `synth`.
 #[derive(Debug, Args)]
 pub struct Synth {
@@ -95,24 +109,17 @@ pub struct Synth {
     /// auto, least-squares, differential-evolution, genetic or continuation: as `--set solve.method=..`
     #[arg(long, value_name = "METHOD")]
     pub method: Option<String>,
-    /// Where every draw comes from: as `--set solve.seed=..`
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
-    pub seed: Option<u64>,
+    #[command(flatten)]
+    pub search: SearchOptions,
     /// Set any key of the problem file, e.g. --set solve.candidates=9
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = |text: &str| pair(text, "solve.candidates=9"))]
     pub set: Vec<(String, String)>,
     /// The answers alone, not what conflicts, what can be built or what limits cost: as `--set solve.advice=false`
     #[arg(long)]
     pub no_advice: bool,
-    /// Threads [default: all cores]; they change the time, never a digit
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
     /// Go on from the checkpoint that an interrupted run left, skip what is done
     #[arg(long)]
     pub resume: bool,
-    /// Keep where a search stands not more often than this; 0: at every boundary, whatever it costs
-    #[arg(long, value_name = "SECONDS", default_value = "1", allow_negative_numbers = true, value_parser = seconds)]
-    pub checkpoint_every: Duration,
     /// Nine precision points: print every real linkage through them, not the best ones alone
     #[arg(long)]
     pub all: bool,
@@ -138,24 +145,17 @@ pub struct Front {
     /// How many linkages
     #[arg(long, value_name = "N", default_value = "20", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=MOST_MEMBERS as i64))]
     pub points: u16,
-    /// Where the result goes [default: results/NAME]
+    /// The folder of the result [default: results/NAME]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Where every draw comes from: as `--set solve.seed=..`
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
-    pub seed: Option<u64>,
+    #[command(flatten)]
+    pub search: SearchOptions,
     /// Set any key of the problem file, e.g. --set require.transmission_deg_min=30
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = |text: &str| pair(text, "require.transmission_deg_min=30"))]
     pub set: Vec<(String, String)>,
-    /// Threads [default: all cores]; they change the time, never a digit
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
     /// Go on from the checkpoint that an interrupted run left
     #[arg(long)]
     pub resume: bool,
-    /// Keep where the search stands not more often than this; 0: at every boundary, whatever it costs
-    #[arg(long, value_name = "SECONDS", default_value = "1", allow_negative_numbers = true, value_parser = seconds)]
-    pub checkpoint_every: Duration,
     /// Print the record instead of the table
     #[arg(long)]
     pub json: bool,

@@ -43,7 +43,7 @@ pub fn load(options: &Synth) -> (Vec<Input>, bool) {
     }
     let mut overrides = options.set.clone();
     overrides.extend(options.method.iter().map(|method| ("solve.method".into(), method.clone())));
-    overrides.extend(options.seed.iter().map(|seed| ("solve.seed".into(), seed.to_string())));
+    overrides.extend(options.search.seed.iter().map(|seed| ("solve.seed".into(), seed.to_string())));
     overrides.extend(options.no_advice.then(|| ("solve.advice".into(), "false".into())));
     let several = files.len() > 1 || options.files.iter().any(|path| path.is_dir());
     // The file that writes to each folder.

@@ -73,7 +73,7 @@ pub fn run(options: &Synth) -> Result<Ended, Ended> {
         // A place that is taken is reported before the searches, not after them.
         summary(options, &[], check_files).map_err(refuse)?;
     }
-    let threads = options.threads.map_or_else(rayon::current_num_threads, usize::from);
+    let threads = options.search.threads.map_or_else(rayon::current_num_threads, usize::from);
     let side_by_side = threads > 1 && jobs >= JOBS_A_THREAD * threads;
     let (workers, threads_each) = if side_by_side { (threads, 1) } else { (1, threads) };
     let pools = (0..workers).map(|_| rayon::ThreadPoolBuilder::new().num_threads(threads_each).build());
@@ -177,7 +177,7 @@ impl Batch<'_> {
         };
         let how = Options {
             resume: self.options.resume,
-            checkpoint_every: self.options.checkpoint_every,
+            checkpoint_every: self.options.search.checkpoint_every,
             extent: if self.side_by_side { Extent::Brief } else { Extent::Full },
         };
         pool.install(|| {

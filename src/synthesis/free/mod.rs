@@ -76,7 +76,7 @@ fn likeness(problem: &Problem, candidate: &Candidate) -> f64 {
     if whole > 0.0 { alike / whole } else { 1.0 }
 }
 
-/// What a stage explores.
+/// The points and the requirements that a stage explores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Explored {
     /// The groups' means, or all points of a sparse target.
@@ -123,7 +123,7 @@ fn stricter(problem: &Problem) -> [Option<Coarse>; 2] {
 struct Free<'a> {
     problem: &'a Problem,
     coarse: Option<&'a Coarse>,
-    /// What can be explored, in the order in which stages begin.
+    /// The explorations that the problem has, in the order in which their stages begin.
     explorations: Vec<Exploration<'a>>,
     /// Number of distinct answers wanted.
     wanted: usize,

@@ -74,7 +74,7 @@ pub struct FrontState {
 pub struct Found {
     /// The front.
     pub front: Front,
-    /// What it cost.
+    /// The evaluations that it cost beside the search.
     pub evaluations: Evaluations,
     /// Why it was stopped.
     pub reason: Option<Reason>,
