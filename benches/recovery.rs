@@ -2,7 +2,7 @@
 //! curves with and without noise, and what a search makes of them.
 //!
 //! ```text
-//! cargo bench --bench recovery                             every class, 40 curves each (200 in all)
+//! cargo bench --bench recovery                             every class, 40 curves each (240 in all)
 //! cargo bench --bench recovery -- closed-60 10             classes whose name contains the word, 10 curves
 //! cargo bench --bench recovery -- rocking 10 --noisy       --clean or --noisy: one of the two alone
 //!     --seed N            of the curves (1); curve i of a class is the same whatever the other arguments
@@ -17,12 +17,13 @@
 //! |---|---|
 //! | closed-60, closed-360 | the whole curve of a crank-rocker or double-crank |
 //! | open | 60 points over 120 to 300 degrees of such a crank |
+//! | small-crank | 60 points of the whole curve of a crank-rocker, all other links 10 to 50 cranks long |
 //! | rocking-closed | 60 points of a whole circuit of a rocker-crank, double-rocker or triple-rocker |
 //! | rocking-open | 60 points over 120 to 300 degrees of such a circuit's parameter |
 //!
 //! Points stand evenly in the parameter (crank angle; psi where the crank rocks). Rocking ones are asked for
-//! with `branch = "any"`. Noise is normal, one hundredth of the clean curve's size in each coordinate. Links
-//! differ by 10 times at most, the coupler point lies within 3 longest links of C, and the bounds hold the
+//! with `branch = "any"`. Noise is normal, one hundredth of the clean curve's size in each coordinate. Except in small-crank
+//! links differ by 10 times at most. The coupler point lies within 3 longest links of C, and the bounds hold the
 //! generating linkage twice over. Types are not asked for; order and one circuit are.
 //!
 //! *Recovered* is, without noise, an accepted candidate with rms/size below 1e-9; with noise, an accepted
@@ -67,14 +68,52 @@ struct Class {
     points: usize,
     closed: bool,
     branch_any: bool,
+    /// Whether the crank is the only short link.
+    small_crank: bool,
 }
 
-const CLASSES: [Class; 5] = [
-    Class { name: "closed-60", types: &TURNING, points: 60, closed: true, branch_any: false },
-    Class { name: "closed-360", types: &TURNING, points: 360, closed: true, branch_any: false },
-    Class { name: "open", types: &TURNING, points: 60, closed: false, branch_any: false },
-    Class { name: "rocking-closed", types: &ROCKING, points: 60, closed: true, branch_any: true },
-    Class { name: "rocking-open", types: &ROCKING, points: 60, closed: false, branch_any: true },
+const CLASSES: [Class; 6] = [
+    Class {
+        name: "closed-60",
+        types: &TURNING,
+        points: 60,
+        closed: true,
+        branch_any: false,
+        small_crank: false,
+    },
+    Class {
+        name: "closed-360",
+        types: &TURNING,
+        points: 360,
+        closed: true,
+        branch_any: false,
+        small_crank: false,
+    },
+    Class { name: "open", types: &TURNING, points: 60, closed: false, branch_any: false, small_crank: false },
+    Class {
+        name: "rocking-closed",
+        types: &ROCKING,
+        points: 60,
+        closed: true,
+        branch_any: true,
+        small_crank: false,
+    },
+    Class {
+        name: "rocking-open",
+        types: &ROCKING,
+        points: 60,
+        closed: false,
+        branch_any: true,
+        small_crank: false,
+    },
+    Class {
+        name: "small-crank",
+        types: &[LinkageType::CrankRocker],
+        points: 60,
+        closed: true,
+        branch_any: false,
+        small_crank: true,
+    },
 ];
 
 struct Arguments {
@@ -132,13 +171,17 @@ impl Arguments {
     }
 }
 
+/// Every curve has a random stream of its own: this many are kept for each index.
+const STREAMS: u64 = 5;
+
 /// Curve `index` of a class.
 fn curve(class: &Class, seed: u64, index: u64) -> Traced {
-    let which = CLASSES.iter().position(|c| c.name == class.name).expect("it is one of them");
-    let draws = &mut stream(seed, index * CLASSES.len() as u64 + which as u64);
+    let which = CLASSES.iter().position(|c| c.name == class.name).expect("it is one of them") as u64;
+    let draws = &mut stream(seed + which / STREAMS, index * STREAMS + which % STREAMS);
     loop {
         let of = one_of(draws, class.types);
-        let linkage = random::linkage(draws, of);
+        let linkage =
+            if class.small_crank { random::with_small_crank(draws) } else { random::linkage(draws, of) };
         let span = uniform(draws, 120.0, 300.0).to_radians();
         if let Some(traced) = trace(draws, &linkage, class.points, (!class.closed).then_some(span)) {
             return traced;

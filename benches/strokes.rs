@@ -27,16 +27,19 @@
 
 #![expect(clippy::print_stdout, reason = "the table is what this program is for")]
 
+use ladder::{NEVER_WORSE, Rung, largest_factor, size};
 use linkwright::internals::app::job::run::{Context, Finished, Job, run};
 use linkwright::internals::files::problem_file::load_any;
-use linkwright::internals::mechanism::LinkageType;
 use linkwright::internals::record::{Candidate, MET_TOLERANCE, Reason};
-use linkwright::internals::task::spec::{ProblemSpec, SolveSpec};
+use linkwright::internals::task::spec::SolveSpec;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
+
+#[path = "../tests/common/ladder.rs"]
+mod ladder;
 
 /// The greatest length of a link, in sizes.
 const LONGEST: f64 = 3.0;
@@ -47,8 +50,6 @@ const REFERENCE_CANDIDATES: usize = 5;
 const NEAR: f64 = 1.02;
 /// The same for a search that says it has found the best.
 const BELIEVED: f64 = 1.01;
-/// The error of a looser problem over that of a tighter one up to which it is not worse.
-const NEVER_WORSE: f64 = 1.001;
 
 struct Arguments {
     filter: String,
@@ -129,35 +130,6 @@ fn strokes(filter: &str) -> Vec<Stroke> {
     found
 }
 
-/// The requirements of the ladder, each beside those before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Rung {
-    Nothing,
-    /// A crank that turns fully.
-    Type,
-    /// A transmission angle of 30 degrees.
-    Transmission,
-    /// A footprint within 1.5 sizes of the target's centre.
-    Footprint,
-}
-
-impl Rung {
-    const ALL: [Rung; 4] = [Rung::Nothing, Rung::Type, Rung::Transmission, Rung::Footprint];
-
-    fn asks(self, spec: &mut ProblemSpec) {
-        if self >= Rung::Type {
-            spec.require.types = vec![LinkageType::CrankRocker, LinkageType::DoubleCrank];
-        }
-        if self >= Rung::Transmission {
-            spec.require.transmission_deg_min = Some(30.0);
-        }
-        if self >= Rung::Footprint {
-            let (reach, [x, y]) = (1.5 * size(spec), [0, 1].map(|k| middle(spec, k)));
-            spec.require.footprint_in = Some([x - reach, y - reach, x + reach, y + reach]);
-        }
-    }
-}
-
 /// The settings of one search.
 #[derive(Clone, Copy)]
 struct Search {
@@ -167,26 +139,6 @@ struct Search {
     candidates: usize,
     limited: bool,
     advice: bool,
-}
-
-/// Returns the diagonal of the points' bounding box.
-fn size(spec: &ProblemSpec) -> f64 {
-    let extent = |k: usize| {
-        let [least, most] = range(spec, k);
-        most - least
-    };
-    extent(0).hypot(extent(1))
-}
-
-/// Returns the middle of the points' bounding box in x (0) or y (1).
-fn middle(spec: &ProblemSpec, k: usize) -> f64 {
-    range(spec, k).iter().sum::<f64>() / 2.0
-}
-
-/// Returns the least and the greatest x (0) or y (1) of the points.
-fn range(spec: &ProblemSpec, k: usize) -> [f64; 2] {
-    let values = spec.task.path.points.iter().map(|p| p[k]);
-    [values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max)]
 }
 
 /// Returns the length of the longest of ground, a, b, c, d and e.
@@ -410,9 +362,7 @@ fn ladder(strokes: &[Stroke], search: Search) {
             let outcome = Outcome::of(stroke, Search { rung, ..search });
             outcome.rms_over_size().unwrap_or(f64::INFINITY)
         });
-        let tighter = |i: usize| errors[i..].iter().copied().fold(f64::INFINITY, f64::min);
-        let ratios = (0..errors.len()).filter(|&i| tighter(i).is_finite()).map(|i| errors[i] / tighter(i));
-        let worst = ratios.fold(1.0, f64::max);
+        let worst = largest_factor(&errors);
         kept += usize::from(worst <= NEVER_WORSE);
         let [nothing, types, transmission, footprint] =
             errors.map(|error| if error.is_finite() { format!("{:.4}", 100.0 * error) } else { "-".into() });

@@ -120,11 +120,11 @@ impl At<'_> {
         let scaled = |row: &Design| unknowns.iter().map(|&(i, by)| by * row[i]).collect::<Vec<f64>>();
         let mut active = Vec::new();
         let mut place = 0;
-        fit.constraints(design, state, &mut |row| {
+        fit.constraints(design, state, &mut |value, row| {
             let (kind, moved_by_points) = kinds[place];
             place += 1;
-            if row.value <= ACTIVE * size {
-                let gradient = scaled(&row.gradient);
+            if value <= ACTIVE * size {
+                let gradient = scaled(&row().gradient);
                 active.push(Active { gradient, moved_by_points, label: self.label(kind) });
             }
         });

@@ -44,7 +44,7 @@ pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     let space = problem.space(start.setting.side);
     let shape = space.shape(&start.design)?;
     for bound in space.derived().iter().filter(|bound| bound.limits.is_fixed()) {
-        rows.push(space.pull_back(&start.design, &shape, &gradient(bound.quantity, &shape), 0.0));
+        rows.push(space.chain_rule(&start.design, &shape).by_design(&gradient(bound.quantity, &shape), 0.0));
     }
     let free: Vec<usize> = (0..DESIGN).filter(|&i| space.bounds()[i].0 < space.bounds()[i].1).collect();
     Some(free.len() - rank(&space, &shape, &rows, &free))

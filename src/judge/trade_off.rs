@@ -108,15 +108,49 @@ fn volume(points: &mut Vec<&[f64]>) -> f64 {
     }
     points.sort_by(|p, q| p[last].total_cmp(&q[last]));
     let mut sum = 0.0;
+    let mut staircase = Staircase::default();
     for i in 0..points.len() {
         let above = points.get(i + 1).map_or(REFERENCE, |next| next[last]);
         let height = above - points[i][last];
+        if last == 2 {
+            staircase.add([points[i][0], points[i][1]]);
+        }
         if height > 0.0 {
-            let mut section: Vec<&[f64]> = points[..=i].iter().map(|p| &p[..last]).collect();
-            sum += height * volume(&mut section);
+            let section = match last {
+                2 => staircase.area(),
+                _ => volume(&mut points[..=i].iter().map(|p| &p[..last]).collect()),
+            };
+            sum += height * section;
         }
     }
     sum
+}
+
+/// The points of a plane that none dominates, by increasing first and decreasing second coordinate.
+#[derive(Default)]
+struct Staircase(Vec<[f64; 2]>);
+
+impl Staircase {
+    fn add(&mut self, [x, y]: [f64; 2]) {
+        let place = self.0.partition_point(|step| step[0] < x);
+        let before = place.checked_sub(1).map(|i| self.0[i][1]);
+        let here = self.0.get(place).filter(|step| step[0] == x).map(|step| step[1]);
+        if before.into_iter().chain(here).any(|lower| lower <= y) {
+            return;
+        }
+        let beaten = self.0[place..].iter().take_while(|step| step[1] >= y).count();
+        self.0.splice(place..place + beaten, [[x, y]]);
+    }
+
+    /// Returns the area that the points dominate below the reference point.
+    fn area(&self) -> f64 {
+        let mut above = REFERENCE;
+        self.0.iter().fold(0.0, |sum, &[x, y]| {
+            let height = above - y;
+            above = y;
+            sum + (REFERENCE - x) * height
+        })
+    }
 }
 
 /// Returns the indices of at most `wanted` members: the best on every axis, then those that add most to the

@@ -60,12 +60,12 @@ pub fn beside(context: Context<'_>, outcome: &mut SearchOutcome) -> Beside {
     let used = outcome.evaluations.objective;
     let allowance = (used / SHARE).max(LEAST).min(used).min(solve.evaluations.saturating_sub(used));
     let mut found = buildable(context, &outcome.candidates, &outcome.others, allowance);
-    if let Some(candidate) = &mut found.candidate {
-        candidate.mirror_serves = mirror_image_serves(problem, candidate);
-    }
     outcome.evaluations += found.evaluations;
     if let Some(reason) = context.stop_reason().filter(|_| found.searched) {
         outcome.reason = reason;
+    }
+    if let Some(candidate) = &mut found.candidate {
+        candidate.mirror_serves = mirror_image_serves(problem, candidate);
     }
     Beside { family, buildable: found.candidate }
 }

@@ -23,6 +23,7 @@ use super::coarse::points_of;
 use super::starts::{Starts, draw_ratios};
 use crate::mechanism::four_bar::mobility::{Mobility, linkage_type};
 use crate::mechanism::{Circuit, Complex, InputArc, LinkageType};
+use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::once::once;
 use crate::numbers::arithmetic::streams::{Stream, below, stream, uniform};
 use crate::task::forms::linear_fit::{Ratios, coupler_direction};
@@ -132,26 +133,82 @@ impl Entry {
         Some([e, coupler_direction(&self.ratios, e, t)?])
     }
 
+    /// Samples the curve at the parameters of [`Samples`].
     fn trace(&self) -> Option<Traced> {
-        let mut points = Vec::with_capacity(TRACED);
-        for (i, circle) in unit_circle().iter().enumerate() {
-            // Half a step off, so that no sample lies on a toggle.
-            let [e, u] = match self.arc {
-                None => [*circle, coupler_direction(&self.ratios, *circle, self.assembly)?],
-                Some(_) => self.at((i as f64 + 0.5) / TRACED as f64)?,
-            };
-            points.push(e * self.ratios.crank + u * self.offset);
+        let samples = Samples::get();
+        let (mut cranks, mut signs) = (samples.circle, [self.assembly; TRACED]);
+        if let Some(arc) = self.arc {
+            signs = samples.signs;
+            let [ex, ey] = &mut cranks;
+            for ((x, y), sine) in ex.iter_mut().zip(ey).zip(&samples.sines) {
+                let angle = arc.middle + (1.0 - 1e-9) * arc.half_width * sine;
+                (*y, *x) = angle.sin_cos();
+            }
         }
-        Traced::of(points)
+        let mut points = [[0.0; TRACED]; 2];
+        vectorised(
+            #[inline(always)]
+            || curve_points(&self.ratios, self.offset, &cranks, &signs, &mut points),
+        )
+        .then(|| Traced::of(points[0].iter().zip(&points[1]).map(|(&x, &y)| Complex::new(x, y)).collect()))?
     }
 }
 
-/// Returns the crank directions at which a full turn is sampled.
-fn unit_circle() -> &'static [Complex; TRACED] {
-    static CIRCLE: OnceLock<[Complex; TRACED]> = OnceLock::new();
-    CIRCLE.get_or_init(|| {
-        std::array::from_fn(|i| Complex::from_polar(1.0, TAU * ((i as f64 + 0.5) / TRACED as f64)))
-    })
+/// Computes the points of a curve at crank directions (x and y coordinates) with their assembly signs, as
+/// [`coupler_direction`] and to the same bits; `false` if the loop is open at one.
+#[inline(always)]
+fn curve_points(
+    ratios: &Ratios,
+    offset: Complex,
+    [ex, ey]: &[[f64; TRACED]; 2],
+    signs: &[f64; TRACED],
+    [x, y]: &mut [[f64; TRACED]; 2],
+) -> bool {
+    let (p, q, r) = (ratios.crank, ratios.coupler, ratios.follower);
+    let mut open = [false; TRACED];
+    for i in 0..TRACED {
+        let (wx, wy) = (1.0 - ex[i] * p, 0.0 - ey[i] * p);
+        let f2 = wx * wx + wy * wy;
+        let along = 0.5 * (q * q - r * r + f2);
+        let h2 = q * q * f2 - along * along;
+        open[i] = h2.is_nan() || h2 <= 0.0 || f2 == 0.0;
+        let across = signs[i] * h2.sqrt();
+        let scale = f2 * q;
+        let (ux, uy) = ((wx * along - wy * across) / scale, (wx * across + wy * along) / scale);
+        x[i] = ex[i] * p + (ux * offset.re - uy * offset.im);
+        y[i] = ey[i] * p + (ux * offset.im + uy * offset.re);
+    }
+    !open.contains(&true)
+}
+
+/// The parameters at which curves are sampled: half a step off, so that no sample lies on a toggle.
+struct Samples {
+    /// The crank directions of a full turn.
+    circle: [[f64; TRACED]; 2],
+    /// The sines of the parameters of an arc, and the assembly signs there.
+    sines: [f64; TRACED],
+    signs: [f64; TRACED],
+}
+
+impl Samples {
+    fn get() -> &'static Samples {
+        static SAMPLES: OnceLock<Samples> = OnceLock::new();
+        SAMPLES.get_or_init(|| {
+            let psi = |i: usize| TAU * ((i as f64 + 0.5) / TRACED as f64);
+            let circle = |i: usize| Complex::from_polar(1.0, psi(i));
+            Samples {
+                circle: [std::array::from_fn(|i| circle(i).re), std::array::from_fn(|i| circle(i).im)],
+                sines: std::array::from_fn(|i| psi(i).sin()),
+                signs: std::array::from_fn(|i| if psi(i).cos() < 0.0 { -1.0 } else { 1.0 }),
+            }
+        })
+    }
+}
+
+/// Returns a number in [0, 2) less its whole part.
+fn fraction(x: f64) -> f64 {
+    debug_assert!((0.0..2.0).contains(&x));
+    if x < 1.0 { x } else { x - 1.0 }
 }
 
 impl Traced {
@@ -169,50 +226,80 @@ impl Traced {
 
     /// Returns the index of the sample before a place in [0, 1) of the curve, and the fraction of the way to the next.
     fn locate(&self, place: f64) -> (usize, f64) {
-        let corner = self.along.partition_point(|length| *length <= place).clamp(1, self.points.len()) - 1;
+        self.between(self.along.partition_point(|length| *length <= place), place)
+    }
+
+    /// As [`Traced::locate`], with the number of samples up to the place.
+    fn between(&self, samples: usize, place: f64) -> (usize, f64) {
+        let corner = samples.clamp(1, self.points.len()) - 1;
         let (from, to) = (self.along[corner], self.along[corner + 1]);
         (corner, if to > from { (place - from) / (to - from) } else { 0.0 })
     }
 
-    fn point(&self, place: f64) -> Complex {
-        let (corner, part) = self.locate(place);
+    fn point(&self, (corner, part): (usize, f64)) -> Complex {
         let (from, to) = (self.points[corner], self.points[(corner + 1) % self.points.len()]);
         from + (to - from) * part
     }
 
     /// Returns points evenly along the curve, from its first sample on.
     fn even(&self) -> Vec<Complex> {
-        (0..EVEN).map(|m| self.point(m as f64 / EVEN as f64)).collect()
+        let mut samples = 0;
+        let mut point = |m: usize| {
+            let place = m as f64 / EVEN as f64;
+            while self.along.get(samples).is_some_and(|length| *length <= place) {
+                samples += 1;
+            }
+            self.point(self.between(samples, place))
+        };
+        (0..EVEN).map(&mut point).collect()
     }
 
     fn parameter(&self, place: f64) -> f64 {
         let (corner, part) = self.locate(place);
-        ((corner as f64 + 0.5 + part) / TRACED as f64).rem_euclid(1.0)
+        fraction((corner as f64 + 0.5 + part) / TRACED as f64)
     }
 }
 
 fn descriptor(even: &[Complex]) -> Option<Descriptor> {
-    let mut out = [0.0f32; 2 * HARMONICS];
-    let mut magnitudes = [0.0; 2 * HARMONICS];
-    let turn = Complex::from_polar(1.0, -TAU / even.len() as f64);
-    let mut step = Complex::new(1.0, 0.0);
-    for k in 0..HARMONICS {
-        step *= turn;
-        let (mut ahead, mut back) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
-        let mut phase = Complex::new(1.0, 0.0);
-        for p in even {
-            ahead += p * phase;
-            back += p * phase.conj();
-            phase *= step;
+    let (mut ahead, mut back) = ([[0.0; HARMONICS]; 2], [[0.0; HARMONICS]; 2]);
+    for (p, [cos, sin]) in even.iter().zip(phases()) {
+        for k in 0..HARMONICS {
+            ahead[0][k] += p.re * cos[k] - p.im * sin[k];
+            ahead[1][k] += p.re * sin[k] + p.im * cos[k];
+            back[0][k] += p.re * cos[k] - p.im * -sin[k];
+            back[1][k] += p.re * -sin[k] + p.im * cos[k];
         }
-        magnitudes[k] = ahead.norm_sqr();
-        magnitudes[HARMONICS + k] = back.norm_sqr();
+    }
+    let mut magnitudes = [0.0; 2 * HARMONICS];
+    for k in 0..HARMONICS {
+        magnitudes[k] = ahead[0][k] * ahead[0][k] + ahead[1][k] * ahead[1][k];
+        magnitudes[HARMONICS + k] = back[0][k] * back[0][k] + back[1][k] * back[1][k];
     }
     let whole: f64 = magnitudes.iter().sum();
+    let mut out = [0.0f32; 2 * HARMONICS];
     for (out, m) in out.iter_mut().zip(magnitudes) {
         *out = (m / whole).sqrt() as f32;
     }
     whole.is_normal().then_some(out)
+}
+
+/// Returns cos and sin of -2 pi k m / M for each of M points evenly along a curve and each harmonic k.
+fn phases() -> &'static [[[f64; HARMONICS]; 2]; EVEN] {
+    static PHASES: OnceLock<[[[f64; HARMONICS]; 2]; EVEN]> = OnceLock::new();
+    PHASES.get_or_init(|| {
+        let mut phases = [[[0.0; HARMONICS]; 2]; EVEN];
+        let turn = Complex::from_polar(1.0, -TAU / EVEN as f64);
+        let mut step = Complex::new(1.0, 0.0);
+        for k in 0..HARMONICS {
+            step *= turn;
+            let mut phase = Complex::new(1.0, 0.0);
+            for [cos, sin] in &mut phases {
+                (cos[k], sin[k]) = (phase.re, phase.im);
+                phase *= step;
+            }
+        }
+        phases
+    })
 }
 
 const KINDS: [LinkageType; 5] = [
@@ -308,13 +395,13 @@ impl Arc {
         let span = uniform(stream, SPANS.0, SPANS.1);
         let mut points = [Complex::new(0.0, 0.0); ON_ARC];
         for (m, p) in points.iter_mut().enumerate() {
-            *p = traced.point((begin + span * m as f64 / (ON_ARC - 1) as f64).rem_euclid(1.0));
+            *p = traced.point(traced.locate(fraction(begin + span * m as f64 / (ON_ARC - 1) as f64)));
         }
         let one_branch = entry.arc.is_none() || {
             // psi = 2 pi parameter: the toggles are at a quarter and at three quarters.
-            let half = |s: f64| (traced.parameter(s.rem_euclid(1.0)) + 0.25).rem_euclid(1.0) < 0.5;
-            let halves: Vec<bool> = (0..=24).map(|m| half(begin + span * f64::from(m) / 24.0)).collect();
-            halves.iter().all(|h| *h == halves[0])
+            let half = |s: f64| fraction(traced.parameter(fraction(s)) + 0.25) < 0.5;
+            let first = half(begin);
+            (1..=24).all(|m| half(begin + span * f64::from(m) / 24.0) == first)
         };
         let points = Normal::of(&points)?;
         Some(Arc { entry: index as u32, begin: begin as f32, span: span as f32, one_branch, points })

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// Batches that have to reach the best objective.
 pub const HITS: usize = 4;
 /// Batches that suffice if they only come within a thousandth of it.
-pub const FLAT_HITS: usize = 16;
+pub const FLAT_HITS: usize = 12;
 /// Relative difference of objectives below which they are the same optimum.
 pub(super) const SAME_OPTIMUM: f64 = 1e-6;
 /// Relative difference of objectives below which they are nearly the same optimum.
@@ -31,7 +31,7 @@ pub(super) struct FreeHits {
 }
 
 /// Hits for sparse targets: each point counts for much, so optima are many and rare ones worth waiting for.
-pub(super) const SPARSE_HITS: FreeHits = FreeHits { same: 6, near: 24 };
+pub(super) const SPARSE_HITS: FreeHits = FreeHits { same: 5, near: 20 };
 /// Hits for dense targets: many points determine the linkage better, and a round costs more.
 pub(super) const DENSE_HITS: FreeHits = FreeHits { same: 4, near: 12 };
 

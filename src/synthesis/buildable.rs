@@ -85,7 +85,8 @@ pub fn buildable(
         let within = Context { observer: &observer, ..context.of(&tight) };
         let (found, evaluations) = second_search(within, &known, allowance);
         outcome.evaluations = evaluations;
-        found.iter().filter_map(|c| place.back(problem, c)).for_each(|candidate| offer(&candidate));
+        let until_stopped = found.iter().take_while(|_| !context.stopped());
+        until_stopped.filter_map(|c| place.back(problem, c)).for_each(|candidate| offer(&candidate));
     }
     if let Some(best) = &mut best {
         let equal = |c: &&Candidate| {
@@ -93,7 +94,10 @@ pub fn buildable(
         };
         best.rank = ranked.iter().find(equal).map_or(0, |c| c.rank);
         if best.rank == 0 {
-            // A ranked one has them already; another may have been judged at a glance.
+            // A ranked one has been measured already; another may have been judged at a glance.
+            if context.stopped() {
+                return outcome;
+            }
             if let Some(judged) = judged_under(problem, best) {
                 best.error = judged.error;
             }

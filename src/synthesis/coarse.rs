@@ -69,13 +69,23 @@ impl Coarse {
         Coarse::with(problem, corner)
     }
 
+    /// Returns a problem of as many groups as a sparse target has points: each point is one.
+    pub fn of_each_point(problem: &Problem) -> Option<Coarse> {
+        Coarse::grouped(problem, points_of(problem), mean)
+    }
+
     fn with(problem: &Problem, point: fn(&Problem, Range<usize>) -> Complex) -> Option<Coarse> {
+        if Coarse::is_for(problem) { Coarse::grouped(problem, GROUPS, point) } else { None }
+    }
+
+    fn grouped(
+        problem: &Problem,
+        count: usize,
+        point: fn(&Problem, Range<usize>) -> Complex,
+    ) -> Option<Coarse> {
         let task = problem.task();
         let n = points_of(problem);
-        if !Coarse::is_for(problem) {
-            return None;
-        }
-        let groups: Vec<Range<usize>> = (0..GROUPS).map(|k| k * n / GROUPS..(k + 1) * n / GROUPS).collect();
+        let groups: Vec<Range<usize>> = (0..count).map(|k| k * n / count..(k + 1) * n / count).collect();
         let weight = |group: &Range<usize>| task.weights()[group.clone()].iter().sum::<f64>();
         let mut spec = problem.spec().clone();
         spec.task.path.points = groups

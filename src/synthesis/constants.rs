@@ -124,13 +124,13 @@ pub mod free {
     pub const BATCH: u64 = 8;
     /// Relative difference below which errors of noise are equally good: the noise of n points has a sum of squares
     /// with a relative spread of (2/n)^(1/2).
-    pub const IN_NOISE: f64 = 3e-2;
+    pub const IN_NOISE: f64 = 1.5e-2;
     /// Rounds with equally good answers that suffice if the errors are noise.
     pub const NOISE_HITS: usize = 4;
     /// Least number of batches for a sparse target.
-    pub const LEAST_BATCHES: u64 = 5;
+    pub const LEAST_BATCHES: u64 = 3;
     /// Batches in which a round on a dense target fits only its best start further.
-    pub const DENSE_BATCHES: u64 = 2;
+    pub const DENSE_BATCHES: u64 = 4;
     /// Least number of batches for a dense target whose errors are small and not noise.
     pub const PATIENT_BATCHES: u64 = 60;
     /// The rms error, in sizes of the target, up to which errors are small.
@@ -163,12 +163,18 @@ pub mod free {
     /// unless the errors are noise.
     pub const CORNERS_EVERY: u64 = 4;
     pub const CORNERS_AT: u64 = 2;
-    /// Of `STRICT_EVERY` batches on a dense target one explores linkages with at least this worst transmission angle, and
-    /// one linkages whose crank turns fully, unless the errors are noise.
-    pub const STRICT_EVERY: u64 = 8;
-    pub const STRICT_AT: u64 = 3;
+    /// The least number of points of a target of which linkages under stricter requirements are explored.
+    pub const STRICT_LEAST: usize = 16;
+    /// Of so many batches one, at its place in them, explores linkages with at least the worst transmission angle
+    /// [`STRICT_DEG`], and one linkages whose crank turns fully, unless the errors are noise: (how many, both places).
+    pub const STRICTER: (u64, u64, u64) = (4, 3, 1);
+    pub const DENSE_STRICTER: (u64, u64, u64) = (8, 3, 7);
     pub const STRICT_DEG: f64 = 30.0;
-    pub const TURNING_AT: u64 = 7;
+    /// Batches of each of these two explorations, before a search whose errors are neither exact nor noise may end: at
+    /// least, and at most if their own best is not believed. Chosen by the ladder test, and for dense targets by
+    /// `benches/strokes`.
+    pub const CONFIRMING: (u64, u64) = (3, 12);
+    pub const DENSE_CONFIRMING: (u64, u64) = (2, 2);
     /// Batches without a new distinct answer that end a search for further ones.
     pub const QUIET_BATCHES: u64 = 6;
     /// Number of ends kept.
@@ -310,6 +316,8 @@ pub mod tightened {
     pub const EVALUATIONS: u64 = 600;
     /// Most evaluations of its polish for the largest deviation or for tolerances.
     pub const FINISH: u64 = 60;
+    /// The largest error, in parts of the largest tolerance, above which the polish for tolerances does not begin.
+    pub const HOPELESS: f64 = 5.0;
 }
 
 /// The picks beside the closest candidate; chosen by `benches/strokes`.
@@ -324,6 +332,10 @@ pub mod picks {
     /// The step, in parts of the first, at which bisection ends; and most steps from one start.
     pub const LEAST_STEP: f64 = 0.1;
     pub const STEPS: usize = 10;
+    /// The evaluations of a search anew beyond the best one, the number of its answers, and the most such searches.
+    pub const SEARCH: u64 = 3000;
+    pub const ANSWERS: usize = 3;
+    pub const ANEW: usize = 2;
     /// Differences of the logarithm of the extent, and of the transmission angle in degrees, up to which they are the same:
     /// less than `verify` tells apart.
     pub const SAME_PART: f64 = 5e-7;
@@ -345,10 +357,11 @@ pub mod front {
     pub const SEEDS: usize = 3;
     pub const ANCHOR_DEG: [f64; 3] = [25.0, 40.0, 55.0];
     pub const ANCHOR_PARTS: [f64; 3] = [0.7, 0.5, 0.35];
-    /// Searches anew under tightened limits: lengths at most these parts of the target's size, angles at least this, and
-    /// both together; the evaluations of each, and how many of its answers are kept.
+    /// Searches anew under tightened limits: lengths at most these parts of the target's size, angles at least this, both
+    /// together, and a large angle with the greater length and alone; the evaluations of each, and how many of its answers are kept.
     pub const COMPACT: [f64; 2] = [1.1, 1.7];
     pub const STEEP_DEG: f64 = 45.0;
+    pub const STEEPEST_DEG: f64 = 75.0;
     pub const SEARCH: u64 = 4000;
     pub const ANSWERS: usize = 6;
     /// Gaps filled in a generation, and the distance on the scaled axes below which a gap is left.

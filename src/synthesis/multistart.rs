@@ -75,7 +75,7 @@ impl<'a> Spender<'a> {
 
     /// Returns whether no further fit begins: nothing is left, or the search should end.
     pub(super) fn is_at_its_end(&self) -> bool {
-        self.left() == 0 || self.context.stopped()
+        self.context.stopped() || self.left() == 0
     }
 
     /// Counts evaluations on the points of a problem.

@@ -2,21 +2,23 @@
 //!
 //! From each of the best distinct candidates and their cognates the limit on the extent (or on the transmission angle)
 //! is tightened step by step, and the linkage fitted again under it, for as long as the error stays within what is
-//! allowed; then the step is bisected. Linkages that cannot reach the best one so far in one fit are given up.
+//! allowed; then the step is bisected. Linkages that cannot reach the best one so far in one fit are given up. Short
+//! searches anew beyond the best one then look for other basins.
 
 use super::answers::complete;
 use super::belief::SAME_OPTIMUM;
 use super::constants::picks::{
-    FOR_LOOSENED, FOR_TRANSMISSION, LEAST_STEP, SAME_DEG, SAME_PART, STARTS, STEP_DEG, STEP_PART, STEPS, WAVE,
+    ANEW, ANSWERS, FOR_LOOSENED, FOR_TRANSMISSION, LEAST_STEP, SAME_DEG, SAME_PART, SEARCH, STARTS, STEP_DEG,
+    STEP_PART, STEPS, WAVE,
 };
 use super::multistart::{LONG_FIT, MIDDLE_FIT};
-use super::tightened::{Tightened, Tighter, fitted};
+use super::tightened::{Tightened, Tighter, fitted, searched_anew};
 use super::{Context, SearchOutcome, offered_cognates};
 use crate::judge::assess::assess;
 use crate::judge::cognates::COGNATES;
 use crate::judge::figures::extent;
 use crate::judge::rank::{chosen, exact_objective};
-use crate::record::{Axis, Candidate, Picks};
+use crate::record::{Axis, Candidate, Evaluations, Front, Picks};
 use crate::task::Problem;
 use crate::task::spec::{Method, Objective};
 use rayon::prelude::*;
@@ -26,6 +28,8 @@ use rayon::prelude::*;
 pub struct Picked {
     /// The picks; `None` if nothing was accepted.
     pub picks: Option<Picks>,
+    /// The evaluations used. They are not those of the search, whose budget they leave alone.
+    pub evaluations: Evaluations,
     /// The evaluations that are left.
     left: u64,
     /// Every accepted linkage that was met on the way, in the order in which they were found.
@@ -133,12 +137,29 @@ pub fn beside(context: Context<'_>, outcome: &mut SearchOutcome) -> Picked {
         picked.met.extend(again.met);
     }
     let spent = allowance - picked.left;
-    outcome.evaluations += context.cost(spent);
+    picked.evaluations = context.cost(spent);
     if let Some(picks) = &mut picked.picks {
         picks.evaluations = spent;
     }
     outcome.reason = context.stop_reason().unwrap_or(outcome.reason);
     picked
+}
+
+/// Takes linkages of a front as picks if they are better than those found; `closest` is the closest candidate.
+pub fn take_better(problem: &Problem, closest: &Candidate, picks: &mut Picks, front: &Front) {
+    let allowed = Allowed::of(problem, closest);
+    let wishes = [(Axis::Extent, &mut picks.smallest), (Axis::Transmission, &mut picks.best_transmission)];
+    for (axis, pick) in wishes {
+        let (wish, Some(pick)) = (Wish(axis), pick) else { continue };
+        let mut best = wish.merit(problem, pick);
+        for member in front.members.iter().filter(|member| allowed.holds(&member.candidate)) {
+            let merit = wish.merit(problem, &member.candidate);
+            if merit > best + wish.same() {
+                best = merit;
+                *pick = Candidate { rank: 0, ..member.candidate.clone() };
+            }
+        }
+    }
 }
 
 /// Finds the picks beside ranked candidates; `others` are the other candidates found. The first of `ranked` is the
@@ -215,6 +236,32 @@ fn along(
             {
                 best = (merit, candidate);
             }
+        }
+    }
+    // Other basins: a short search anew beyond the best one so far, for as long as that leads on.
+    for _ in 0..ANEW {
+        let most = picked.left.saturating_sub(reserved);
+        if most < 2 * SEARCH || context.stopped() {
+            break;
+        }
+        let limits = wish.limits(best.0 + wish.step());
+        let Some((answers, evaluations)) = searched_anew(context, &limits, SEARCH, ANSWERS) else { break };
+        picked.left -= evaluations.min(picked.left);
+        let before = best.0;
+        for start in answers.into_iter().filter(|c| c.accepted).take(ANSWERS) {
+            let most = picked.left.saturating_sub(reserved);
+            let end = Climb::from(context, allowed, wish, &start, (best.0, most));
+            picked.left -= end.evaluations.min(picked.left);
+            picked.met.extend(end.met);
+            let own = allowed.holds(&start).then(|| (wish.merit(problem, &start), start));
+            for found in own.into_iter().chain(end.best) {
+                if found.0 > best.0 + same {
+                    best = found;
+                }
+            }
+        }
+        if best.0 <= before {
+            break;
         }
     }
     // The least error at that merit.

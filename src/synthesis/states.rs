@@ -56,9 +56,13 @@ pub struct FreeState {
     pub(super) stages: Vec<StageState>,
     /// The ends, least merit first.
     pub(super) ends: Vec<End>,
-    /// The level of the best error on a dense target whose errors are not noise.
+    /// The level of the best error, if its errors are not noise and the target is dense or explored under stricter
+    /// requirements.
     #[serde(default)]
     pub(super) reached: Option<Level>,
+    /// Whether the stopping rule was met after the last batch, and stricter explorations are to confirm it.
+    #[serde(default)]
+    pub(super) confirming: bool,
 }
 
 /// A level of the error, and the evaluations after which it was reached.
@@ -80,12 +84,20 @@ pub(super) struct StageState {
     pub(super) finished: Vec<(Exact, Exact)>,
     /// Rounds so far.
     pub(super) index: u64,
+    /// The least merit of each independent round on the explored points.
+    #[serde(default)]
+    pub(super) round_merits: Vec<Exact>,
 }
 
 impl StageState {
     /// The state of a stage before its first batch.
-    pub(super) const BEGUN: StageState =
-        StageState { bar: f64::INFINITY, leading: Vec::new(), finished: Vec::new(), index: 0 };
+    pub(super) const BEGUN: StageState = StageState {
+        bar: f64::INFINITY,
+        leading: Vec::new(),
+        finished: Vec::new(),
+        index: 0,
+        round_merits: Vec::new(),
+    };
 }
 
 /// The end of a fit, judged or not yet.

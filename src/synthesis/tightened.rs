@@ -1,13 +1,16 @@
 //! Fits of a known linkage under tightened limits, judged by the problem itself: the epsilon constraints of
 //! [`super::picks`] and [`super::front`].
 
-use super::Context;
-use super::constants::tightened::{EVALUATIONS, FINISH};
+use super::constants::tightened::{EVALUATIONS, FINISH, HOPELESS};
 use super::multistart::{Effort, judged, polish_until};
 use super::polish::{finish, reserve};
+use super::{Context, plan};
+use crate::judge::assess::assess;
 use crate::judge::warm::start_at;
 use crate::record::{Axis, Candidate, Figures};
 use crate::task::Problem;
+use crate::task::spec::{Method, Objective};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Limits on figures beside the requirements of a problem; `None`: no limit.
@@ -78,6 +81,29 @@ impl Tighter {
     }
 }
 
+/// Searches anew under limits with so many evaluations, for so many answers. Returns those, judged by the context's own
+/// problem, and the evaluations used; `None` if the problem under the limits cannot be searched.
+pub(super) fn searched_anew(
+    context: Context<'_>,
+    limits: &Tighter,
+    evaluations: u64,
+    answers: usize,
+) -> Option<(Vec<Candidate>, u64)> {
+    let problem = context.problem;
+    let mut spec = limits.of(problem)?.spec().clone();
+    spec.solve.evaluations = evaluations;
+    spec.solve.method = Method::LeastSquares;
+    // Tolerances and the largest deviation are left to the fits that follow.
+    spec.task.path.tolerance = None;
+    spec.solve.objective = Objective::SumOfSquares;
+    spec.solve.candidates = answers;
+    let tight = Problem::new(spec).ok()?;
+    let outcome = plan::approximate(context.of(&tight).silent()).ok()?;
+    let judged = |c: &Candidate| assess(problem, &c.linkage, &c.crank_deg, &c.t1_at);
+    let answers: Vec<Option<Candidate>> = outcome.candidates.par_iter().map(judged).collect();
+    Some((answers.into_iter().flatten().collect(), outcome.evaluations.objective))
+}
+
 /// The end of a fit under tightened limits.
 pub(super) struct Tightened {
     /// The candidate, judged by the problem itself; `None` if there is none.
@@ -108,8 +134,11 @@ pub(super) fn fitted(
     out.candidate = judged(context.problem, &end);
     let is_accepted = out.candidate.as_ref().is_some_and(|c| c.accepted);
     let deviations = reserve(tight, u64::MAX) > 0;
-    let max = tight.spec().solve.objective == crate::task::spec::Objective::MaxDeviation;
-    if deviations && (max || !is_accepted) && !context.stopped() {
+    let max = tight.spec().solve.objective == Objective::MaxDeviation;
+    let tolerances = tight.task().tolerances().unwrap_or_default();
+    let most = HOPELESS * tolerances.iter().copied().fold(0.0, f64::max);
+    let is_hopeless = out.candidate.as_ref().is_some_and(|c| c.error.max > most);
+    if deviations && (max || !(is_accepted || is_hopeless)) && !context.stopped() {
         let left = evaluations.saturating_sub(out.evaluations);
         let polished = finish(within, &end, (effort.steps as u64 / 4).min(FINISH).min(left));
         out.evaluations += polished.evaluations;

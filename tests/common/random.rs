@@ -83,7 +83,30 @@ pub fn links(stream: &mut Stream, of: LinkageType) -> [f64; 4] {
 /// A linkage of a type in a random place, at a random size and assembly.
 pub fn linkage(stream: &mut Stream, of: LinkageType) -> FourBar {
     let scale = log_uniform(stream, 0.1, 100.0);
-    let [ground, crank, coupler, follower] = links(stream, of).map(|l| l * scale);
+    let links = links(stream, of).map(|l| l * scale);
+    placed(stream, links)
+}
+
+/// The lengths of the other links of a linkage with a small crank, in cranks.
+const SMALL_CRANK: (f64, f64) = (10.0, 50.0);
+
+/// A crank-rocker whose other links are all 10 to 50 cranks long, in a random place, at a random size and assembly.
+pub fn with_small_crank(stream: &mut Stream) -> FourBar {
+    loop {
+        let scale = log_uniform(stream, 0.1, 100.0);
+        let mut long = || log_uniform(stream, SMALL_CRANK.0, SMALL_CRANK.1);
+        let links = [long(), 1.0, long(), long()];
+        let longest = links.into_iter().fold(0.0, f64::max);
+        if linkage_type(links) == Some(LinkageType::CrankRocker)
+            && grashof_margin(links) >= LEAST_MARGIN * longest
+        {
+            return placed(stream, links.map(|l| l * scale));
+        }
+    }
+}
+
+/// A linkage with these links in a random place and assembly.
+fn placed(stream: &mut Stream, [ground, crank, coupler, follower]: [f64; 4]) -> FourBar {
     let longest = [ground, crank, coupler, follower].into_iter().fold(0.0, f64::max);
     let pivot = Complex::new(uniform(stream, -3.0, 3.0), uniform(stream, -3.0, 3.0)) * longest;
     let other = pivot + Complex::from_polar(ground, uniform(stream, -PI, PI));

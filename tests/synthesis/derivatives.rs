@@ -3,7 +3,7 @@
 use crate::common::parse;
 use linkwright::internals::numbers::arithmetic::streams::stream;
 use linkwright::internals::numbers::optimise::levenberg_marquardt::{
-    BlockLeastSquares, ConstraintRow, LmOptions, LmOutcome, PointBlock, derivative_error, solve,
+    BlockLeastSquares, EachConstraint, LmOptions, LmOutcome, PointBlock, derivative_error, solve,
 };
 use linkwright::internals::synthesis::starts::Starts;
 use linkwright::internals::task::Problem;
@@ -216,7 +216,7 @@ impl BlockLeastSquares<1> for Kink {
         true
     }
 
-    fn constraints(&self, _: &[f64; 1], _: &(), _: &mut dyn FnMut(&ConstraintRow<1>)) {}
+    fn constraints(&self, _: &[f64; 1], _: &(), _: &mut EachConstraint<'_, 1>) {}
 }
 
 #[test]

@@ -40,7 +40,7 @@ fn drawn(draws: &mut Stream, which: u64, n: usize) -> Vec<Complex> {
 
 /// Target `index`: a coupler curve of a crank that turns fully, an arc of a coupler curve, or a drawn shape, with its
 /// name.
-fn target(index: u64, evaluations: u64) -> (&'static str, ProblemSpec) {
+pub fn target(index: u64, evaluations: u64) -> (&'static str, ProblemSpec) {
     let draws = &mut stream(11, index);
     let (name, closed, points) = match index % 4 {
         0 | 1 => loop {
@@ -100,7 +100,7 @@ fn images(index: u64, spec: &ProblemSpec) -> Vec<(&'static str, Similarity, Numb
     images
 }
 
-fn solved(spec: &ProblemSpec) -> Record {
+pub fn solved(spec: &ProblemSpec) -> Record {
     let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
     run(&Job::new("it", spec.clone()), &context).expect("it runs").record
 }

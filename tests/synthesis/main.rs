@@ -14,6 +14,7 @@ mod costs;
 mod derivatives;
 mod deviation;
 mod invariance;
+mod ladder;
 mod projection;
 mod properties;
 #[path = "../common/random.rs"]
@@ -22,6 +23,8 @@ mod reduced;
 mod repeats;
 mod requirements;
 mod resuming;
+#[path = "../common/ladder.rs"]
+mod rungs;
 mod search;
 mod snapping;
 mod suite;

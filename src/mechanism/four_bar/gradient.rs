@@ -68,6 +68,15 @@ pub fn shape_gradient(frame: &Frame, crank: f64, coupler: f64, offset: Complex) 
     })
 }
 
+/// Computes dP/dphi alone, the last part of [`shape_gradient`]; `None` at a toggle.
+#[inline]
+pub fn by_crank_angle(frame: &Frame, crank: f64, coupler: f64, offset: Complex) -> Option<Complex> {
+    let Frame { crank: e, coupler: u, follower: v } = *frame;
+    let sine = dot(v, turned(u));
+    let pin = turned(e) * crank;
+    (sine.abs() > TOGGLE_SINE).then(|| pin - turned(u) * offset * (dot(v, pin) / (coupler * sine)))
+}
+
 impl FourBar {
     /// Computes the unit vectors along crank, coupler and follower at a closed position; `None` if the loop is open.
     pub fn frame(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<Frame> {

@@ -86,6 +86,7 @@ impl Batch {
             self.draws += round.draws;
             self.cost += round.cost;
             if round.independent {
+                self.stage.round_merits.push(Exact(round.explored()));
                 self.best_merits.push(self.least_on_all(round));
             }
             self.stage.bar = self.stage.bar.min(round.explored());
@@ -107,7 +108,7 @@ impl Batch {
         let ends = unfinished(common.setup, rounds, &self.stage);
         let parts = ends.len() as u64;
         let found = AtomicU64::new(u64::MAX);
-        let finishes: Vec<(Option<Finished>, Evaluations)> = ends
+        let finishes: Vec<(Vec<Finished>, Evaluations)> = ends
             .into_par_iter()
             .enumerate()
             .map(|(i, end)| finished(common, (i as u64, end), share(left, parts, i as u64), &found))
@@ -116,8 +117,9 @@ impl Batch {
         for (i, (finished, cost)) in (0..).zip(finishes) {
             self.cost += cost;
             self.ample &= spared(cost.objective, share(left, parts, i));
+            let is_exact = finished.iter().any(|end| end.exact);
             done.extend(finished);
-            if done.last().is_some_and(|end| end.exact) {
+            if is_exact {
                 break;
             }
         }

@@ -6,24 +6,28 @@
 //! `MIDDLE` of those further, and finishes those that can still matter.
 //!
 //! Dense targets are explored in groups of points ([`super::coarse`]); now and then all points are explored, or one point
-//! of each group, to find detail that the groups' means blur, or the groups under a stricter transmission angle or with a
-//! crank that turns fully: their ends are finished without that, so that a looser problem meets the answers of a tighter
-//! one. The correspondence between the points and the curve is recomputed for their ends
-//! (`reassign`), and these are fitted again for as long as that gains. The ends of a batch are finished on all points
-//! after it, each of them once however many rounds reached it. Ends whose points have strayed to a circuit or branch
-//! that the referee will refuse are led back (`required`). Rounds run in parallel in batches of `BATCH` and are read in
-//! their order: the number of threads changes nothing but the time. Ends are judged by the referee in order of
-//! increasing error until enough of them are accepted.
+//! of each group, to find detail that the groups' means blur. The correspondence between the points and the curve is
+//! recomputed for their ends (`reassign`), and these are fitted again for as long as that gains. The ends of a batch are
+//! finished on all points after it, each of them once however many rounds reached it. Ends whose points have strayed to
+//! a circuit or branch that the referee will refuse are led back (`required`). Rounds run in parallel in batches of
+//! `BATCH` and are read in their order: the number of threads changes nothing but the time. Ends are judged by the
+//! referee in order of increasing error until enough of them are accepted.
 //!
-//! *Stopping rule*: as many independent rounds as [`super::belief::FreeHits`] gives (rounds that start near known ends do not count) have
-//! reached the best error within `SAME_OPTIMUM`, or four or more times as many within `NEARLY`, for an optimum that is
-//! approached and hardly reached; and either as many distinct answers as were asked for are known or `QUIET_BATCHES`
-//! batches brought no new one. Sparse targets are searched through `LEAST_BATCHES` batches at least, so that rounds
+//! Some batches explore a stricter problem ([`mod@stricter`]) with the starts that a search of that problem would draw. Their
+//! ends are finished with the stricter requirement and without it, and either can be an answer: so a looser problem
+//! meets the answers of a tighter one.
+//!
+//! *Stopping rule*: as many independent rounds as [`super::belief::FreeHits`] gives (rounds that start near known ends do
+//! not count) have reached the best error within `SAME_OPTIMUM`, or four or more times as many within `NEARLY`, for an
+//! optimum that is approached and hardly reached; and either as many distinct answers as were asked for are known or
+//! `QUIET_BATCHES` batches brought no new one. Unless the errors are exact or noise, the stricter problems confirm it
+//! with batches of their own. Sparse targets are searched through `LEAST_BATCHES` batches at least, so that rounds
 //! near known ends get their turn. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
 //! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough. If neighbouring residuals are
 //! correlated, the linkage misses a shape that another linkage may have. The search then ends when the error has kept
 //! its level (within a factor `LEVEL`) for several times as many evaluations as it took to reach it: `LEVEL_TIMES` if
-//! `LEVEL_HITS` independent rounds came to that level, else `QUIET_TIMES`. An error below `SMALL` sizes may be that
+//! `LEVEL_HITS` independent rounds came to that level, else `QUIET_TIMES`; so does a search of a sparse target of
+//! `STRICT_LEAST` points or more. An error below `SMALL` sizes may be that
 //! of a clean curve whose own linkage is still to be found: `PATIENT_BATCHES` batches are searched at least. An exact
 //! answer needs no second hit.
 
@@ -31,32 +35,33 @@ pub use super::constants::free::LEAST_MATCHED;
 
 use super::atlas::Matches;
 use super::belief::{DENSE_HITS, FreeHits, NEARLY, SAME_OPTIMUM, SPARSE_HITS};
-use super::coarse::Coarse;
+use super::coarse::{Coarse, points_of};
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive};
 use super::polish::{basins_wanted, promising};
 use super::starts::Starts;
 use super::states::{Counts, End, FreeState, Level, SearchState, StageState};
 use super::{Context, HitsSoFar, repeats};
 use crate::judge::rank::{exact_cost, searched};
-use crate::mechanism::{LinkageType, dot};
+use crate::mechanism::dot;
 use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Candidate;
 use crate::synthesis::constants::free::{
-    ALIKE, BATCH, CORNERS_AT, CORNERS_EVERY, IN_NOISE, KEPT, LEAST_BATCHES, LEVEL, LEVEL_HITS, LEVEL_LEAST,
-    LEVEL_TIMES, MANY_HITS, MANY_LEAST, NOISE_HITS, NOISE_LEAST, PATIENT_BATCHES, QUIET_BATCHES, QUIET_LEAST,
-    QUIET_TIMES, SMALL, STRICT_AT, STRICT_DEG, STRICT_EVERY, TURNING_AT, WHOLE_ELSE, WHOLE_EVERY,
-    WHOLE_IN_NOISE, WHOLE_MOST,
+    ALIKE, BATCH, CONFIRMING, CORNERS_AT, CORNERS_EVERY, DENSE_CONFIRMING, DENSE_STRICTER, IN_NOISE, KEPT,
+    LEAST_BATCHES, LEVEL, LEVEL_HITS, LEVEL_LEAST, LEVEL_TIMES, MANY_HITS, MANY_LEAST, NOISE_HITS,
+    NOISE_LEAST, PATIENT_BATCHES, QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICT_LEAST, STRICTER,
+    WHOLE_ELSE, WHOLE_EVERY, WHOLE_IN_NOISE, WHOLE_MOST,
 };
 use crate::task::Problem;
-use crate::task::spec::{OnePolicy, RequireSpec};
 use batch::Batch;
 use round::Setup;
+use stricter::{Kind, Stricter, stricter};
 
 mod batch;
 mod moves;
 mod required;
 mod round;
 mod state;
+mod stricter;
 
 /// Returns whether the errors of the best acceptable end are noise.
 fn is_noise(problem: &Problem, ends: &[End]) -> bool {
@@ -85,10 +90,8 @@ enum Explored {
     Whole,
     /// One point of each group.
     Corners,
-    /// The groups' means under a stricter transmission angle.
-    Strict,
-    /// The groups' means with a crank that turns fully.
-    Turning,
+    /// A stricter problem.
+    Stricter(Kind),
 }
 
 /// A problem to explore, with its starts; all points if there is no coarse one.
@@ -96,27 +99,9 @@ enum Explored {
 struct Exploration<'a> {
     explored: Explored,
     coarse: Option<&'a Coarse>,
+    /// The stricter problem with all points, if a stricter one is explored.
+    stricter: Option<&'a Problem>,
     starts: &'a Starts<'a>,
-}
-
-/// Returns two stricter problems of a dense target, each coarse: with the transmission angle [`STRICT_DEG`] at least, and
-/// with a crank that turns fully. `None` for one that is asked for already; for both if the motion may pass toggles,
-/// which neither of them does.
-fn stricter(problem: &Problem) -> [Option<Coarse>; 2] {
-    let with = |change: &dyn Fn(&mut RequireSpec)| {
-        let mut spec = problem.spec().clone();
-        change(&mut spec.require);
-        Coarse::of(&problem.with(spec).ok()?)
-    };
-    let require = &problem.spec().require;
-    if require.branch == OnePolicy::Any || !Coarse::is_for(problem) {
-        return [None, None];
-    }
-    let is_strict = require.transmission_deg_min.is_some_and(|asked| asked >= STRICT_DEG);
-    let strict = if is_strict { None } else { with(&|r| r.transmission_deg_min = Some(STRICT_DEG)) };
-    let turning = vec![LinkageType::CrankRocker, LinkageType::DoubleCrank];
-    let turning = if require.types.is_empty() { with(&|r| r.types.clone_from(&turning)) } else { None };
-    [strict, turning]
 }
 
 /// The search with its state.
@@ -139,30 +124,41 @@ struct Free<'a> {
 pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found> {
     let problem = context.problem;
     let (coarse, corners) = (Coarse::of(problem), Coarse::of_corners(problem));
-    let [strict, turning] = stricter(problem);
+    let stricter = stricter(problem);
     let whole = Starts::new(problem);
-    let [of_groups, of_corners, of_strict, of_turning] =
-        [&coarse, &corners, &strict, &turning].map(|coarse| Some(Starts::new(&coarse.as_ref()?.problem)));
+    let [of_groups, of_corners] =
+        [&coarse, &corners].map(|coarse| Some(Starts::new(&coarse.as_ref()?.problem)));
+    let of_stricter: Vec<Starts<'_>> = stricter.iter().map(|s| Starts::new(&s.coarse.problem)).collect();
     let mut explorations = vec![Exploration {
         explored: Explored::First,
         coarse: coarse.as_ref(),
+        stricter: None,
         starts: of_groups.as_ref().unwrap_or(&whole),
     }];
     if coarse.is_some() && problem.task().len() <= WHOLE_MOST {
-        explorations.push(Exploration { explored: Explored::Whole, coarse: None, starts: &whole });
+        explorations.push(Exploration {
+            explored: Explored::Whole,
+            coarse: None,
+            stricter: None,
+            starts: &whole,
+        });
     }
-    for (explored, coarse, starts) in [
-        (Explored::Corners, &corners, &of_corners),
-        (Explored::Strict, &strict, &of_strict),
-        (Explored::Turning, &turning, &of_turning),
-    ] {
-        let both = coarse.as_ref().zip(starts.as_ref());
-        explorations.extend(both.map(|(coarse, starts)| Exploration {
-            explored,
+    if let Some((coarse, starts)) = corners.as_ref().zip(of_corners.as_ref()) {
+        explorations.push(Exploration {
+            explored: Explored::Corners,
             coarse: Some(coarse),
+            stricter: None,
             starts,
-        }));
+        });
     }
+    explorations.extend(stricter.iter().zip(&of_stricter).map(
+        |(Stricter { kind, problem, coarse }, starts)| Exploration {
+            explored: Explored::Stricter(*kind),
+            coarse: Some(coarse),
+            stricter: Some(problem),
+            starts,
+        },
+    ));
     let mut free = Free {
         problem,
         coarse: coarse.as_ref(),
@@ -174,9 +170,10 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
         best: None,
     };
     free.begin_next_stage();
-    let points = coarse.as_ref().map_or(problem.task().len(), |coarse| coarse.problem.task().len());
+    let points = |e: &Exploration<'_>| e.coarse.map_or(problem, |coarse| &coarse.problem).task().len();
+    let points: Vec<usize> = free.explorations.iter().map(points).collect();
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().free.clone());
-    if let Some(state) = earlier.filter(|state| state.is_of(problem, points)) {
+    if let Some(state) = earlier.filter(|state| state.is_of(problem, &points)) {
         (1..state.stages.len()).for_each(|_| free.begin_next_stage());
         free.at = state.judged_again(problem);
     }
@@ -195,33 +192,78 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
 impl<'a> Free<'a> {
     /// Begins the next stage that has not begun.
     fn begin_next_stage(&mut self) {
-        let Exploration { coarse, starts, .. } = self.explorations[self.setups.len()];
+        let Exploration { coarse, stricter, starts, .. } = self.explorations[self.setups.len()];
         let matches = (starts.arc.len() >= LEAST_MATCHED).then(|| Matches::of(starts));
         let (problem, single, exact) = (self.problem, self.wanted == 1, self.exact);
-        self.setups.push(Setup { problem, coarse, starts, matches, single, exact });
+        self.setups.push(Setup { problem, coarse, stricter, starts, matches, single, exact });
         self.at.stages.push(StageState::BEGUN);
     }
 
-    /// Returns the index of the stage of the next batch: now and then all points are explored, or one point of each
-    /// group, to find detail that grouping blurs, or the groups under a stricter requirement, to find linkages to which
-    /// starts without it seldom lead.
+    /// Returns the index of the stage of the next batch: one that is to confirm the best answer once the stopping rule
+    /// is met, else the stage in turn.
     fn next_stage(&mut self) -> usize {
-        let is_noise = is_noise(self.problem, &self.at.ends);
-        let batch = self.at.counts.batch;
-        let on_all_at = if is_noise { WHOLE_IN_NOISE } else { WHOLE_ELSE };
-        let wanted = [
-            (Explored::Whole, batch % WHOLE_EVERY == on_all_at),
-            (Explored::Corners, !is_noise && batch % CORNERS_EVERY == CORNERS_AT),
-            (Explored::Strict, !is_noise && batch % STRICT_EVERY == STRICT_AT),
-            (Explored::Turning, !is_noise && batch % STRICT_EVERY == TURNING_AT),
-        ];
-        let place = |explored: Explored| self.explorations.iter().position(|e| e.explored == explored);
-        let stage = wanted.into_iter().filter(|(_, now)| *now).find_map(|(explored, _)| place(explored));
-        let stage = stage.unwrap_or(0);
+        let stage = if self.at.confirming { self.to_confirm() } else { None };
+        let stage = stage.unwrap_or_else(|| self.stage_in_turn());
         while self.setups.len() <= stage {
             self.begin_next_stage();
         }
         stage
+    }
+
+    /// Returns the index of the stage whose turn it is: now and then all points are explored, or one point of each
+    /// group, to find detail that grouping blurs, or a stricter problem, to find linkages to which starts without its
+    /// requirement seldom lead.
+    fn stage_in_turn(&self) -> usize {
+        let is_noise = self.is_noise();
+        let batch = self.at.counts.batch;
+        let on_all_at = if is_noise { WHOLE_IN_NOISE } else { WHOLE_ELSE };
+        let (every, strict_at, turning_at) = if self.coarse.is_some() { DENSE_STRICTER } else { STRICTER };
+        let wanted = [
+            (Explored::Whole, batch % WHOLE_EVERY == on_all_at),
+            (Explored::Corners, !is_noise && batch % CORNERS_EVERY == CORNERS_AT),
+            (Explored::Stricter(Kind::Strict), !is_noise && batch % every == strict_at),
+            (Explored::Stricter(Kind::Turning), !is_noise && batch % every == turning_at),
+        ];
+        let place = |explored: Explored| self.explorations.iter().position(|e| e.explored == explored);
+        let stage = wanted.into_iter().filter(|(_, now)| *now).find_map(|(explored, _)| place(explored));
+        stage.unwrap_or(0)
+    }
+
+    /// Returns the index of a stricter stage that is still to confirm the best answer: the one with fewer rounds of
+    /// those that have neither found their own best often enough nor had their most rounds.
+    fn to_confirm(&self) -> Option<usize> {
+        let rounds = |i: usize| self.at.stages.get(i).map_or(0, |stage| stage.index);
+        let is_open = |i: usize| {
+            let Some(stage) = self.at.stages.get(i) else { return true };
+            let merits = || stage.round_merits.iter().map(|merit| merit.0);
+            let hits = self.hits_wanted();
+            let believed = repeats::came(merits(), stage.bar, SAME_OPTIMUM, self.exact) >= hits.same
+                || repeats::came(merits(), stage.bar, NEARLY, self.exact) >= hits.near;
+            let batches = stage.index / BATCH;
+            let (least, most) = if self.coarse.is_some() { DENSE_CONFIRMING } else { CONFIRMING };
+            batches < least || (!believed && batches < most)
+        };
+        let is_stricter = |i: &usize| matches!(self.explorations[*i].explored, Explored::Stricter(_));
+        let open = (0..self.explorations.len()).filter(is_stricter).filter(|i| is_open(*i));
+        open.min_by_key(|i| rounds(*i))
+    }
+
+    /// Returns whether an error that is not small has kept its level for so long that more rounds will hardly lower it.
+    fn keeps_its_level(&mut self, error: f64) -> bool {
+        let spent = self.at.evaluations.objective;
+        let reached = self.at.reached.filter(|level| error >= level.cost.0 / LEVEL);
+        let reached = reached.unwrap_or(Level { cost: Exact(error), evaluations: spent });
+        self.at.reached = Some(reached);
+        let after = |least: u64, times: u64| spent >= least.max(times * reached.evaluations);
+        let again = self.within(error, LEVEL - 1.0);
+        let many = again >= MANY_HITS && after(MANY_LEAST, LEVEL_TIMES);
+        let several = again >= LEVEL_HITS && after(LEVEL_LEAST, LEVEL_TIMES);
+        error > self.cost_of(SMALL) && (many || several || after(QUIET_LEAST, QUIET_TIMES))
+    }
+
+    /// Returns whether the target is dense and the errors of the best acceptable end are noise.
+    fn is_noise(&self) -> bool {
+        self.coarse.is_some() && is_noise(self.problem, &self.at.ends)
     }
 
     /// Sorts the ends and drops the worst. Only some of the refused ends are kept: they must not crowd out the accepted.
@@ -338,34 +380,28 @@ impl Strategy for Free<'_> {
         let error = searched(self.problem, best);
         let is_exact = error <= self.exact;
         let hits = self.hits_wanted();
-        let is_noise = self.coarse.is_some() && is_noise(self.problem, &self.at.ends);
+        let is_noise = self.is_noise();
         let believed = self.within(error, SAME_OPTIMUM) >= hits.same
             || self.within(error, NEARLY) >= hits.near
             || (is_noise && self.within(error, IN_NOISE) >= NOISE_HITS);
         let batches = self.at.counts.batch;
         let ripe = match self.coarse {
             _ if is_exact => believed,
-            None => believed && batches >= LEAST_BATCHES,
+            None if believed && batches >= LEAST_BATCHES => true,
+            None if points_of(self.problem) < STRICT_LEAST => false,
             Some(_) if is_noise && error > self.cost_of(NOISE_LEAST) => believed,
-            Some(_) => {
-                let spent = self.at.evaluations.objective;
-                let reached = self.at.reached.filter(|level| error >= level.cost.0 / LEVEL);
-                let reached = reached.unwrap_or(Level { cost: Exact(error), evaluations: spent });
-                self.at.reached = Some(reached);
-                let after = |least: u64, times: u64| spent >= least.max(times * reached.evaluations);
-                let again = self.within(error, LEVEL - 1.0);
-                let is_small = error <= self.cost_of(SMALL);
-                let many = again >= MANY_HITS && after(MANY_LEAST, LEVEL_TIMES);
-                (believed && batches >= PATIENT_BATCHES)
-                    || (!is_small && (many || (again >= LEVEL_HITS && after(LEVEL_LEAST, LEVEL_TIMES))))
-                    || (!is_small && after(QUIET_LEAST, QUIET_TIMES))
-            }
+            _ => (believed && batches >= PATIENT_BATCHES) || self.keeps_its_level(error),
         };
+        self.at.confirming = false;
         if !(ripe || (is_exact && self.wanted == 1)) {
             return false;
         }
         let accepted = if self.wanted == 1 { Vec::new() } else { self.accepted() };
         let Counts { known, quiet, .. } = &mut self.at.counts;
-        are_enough(context, &accepted, self.wanted, (known, quiet), QUIET_BATCHES)
+        if !are_enough(context, &accepted, self.wanted, (known, quiet), QUIET_BATCHES) {
+            return false;
+        }
+        self.at.confirming = !is_exact && !is_noise && self.to_confirm().is_some();
+        !self.at.confirming
     }
 }

@@ -13,7 +13,7 @@ use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 
 /// Types whose circuits are branches: the input turns fully.
-const ONE_BRANCH: [LinkageType; 2] = [LinkageType::CrankRocker, LinkageType::DoubleCrank];
+pub(super) const ONE_BRANCH: [LinkageType; 2] = [LinkageType::CrankRocker, LinkageType::DoubleCrank];
 
 /// Returns the most evaluations that a fit from a start is worth. If one branch is required and no type, only a start
 /// that was led back, or is near an end that was, aims at a type.

@@ -26,6 +26,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub(super) struct Setup<'a> {
     pub(super) problem: &'a Problem,
     pub(super) coarse: Option<&'a Coarse>,
+    /// The stricter problem with all points, if a stricter one is explored.
+    pub(super) stricter: Option<&'a Problem>,
     pub(super) starts: &'a Starts<'a>,
     pub(super) matches: Option<Matches>,
     /// Whether one answer is wanted: the first exact one then ends the search.
@@ -172,10 +174,12 @@ fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f6
         spender.spend(explored, 1);
         drawn.extend(promise(explored, &mut start).map(|promise| (promise, start)));
     };
+    // A stricter exploration draws as a search of the stricter problem would.
+    let drawn_as = if setup.stricter.is_some() { index } else { of_search };
+    let turn = drawn_as as usize / 2;
     // Of three independent rounds two take matches, as long as there are any.
-    let turn = of_search as usize / 2;
     let first = (turn - turn / 3) * MATCHED;
-    let mut draws = stream(setup.problem.spec().solve.seed, of_search);
+    let mut draws = stream(setup.problem.spec().solve.seed, drawn_as);
     if !common.is_independent(round) {
         let end = &near_ends[(index / 2) as usize % near_ends.len()];
         for i in 0..JITTERED {
@@ -236,7 +240,7 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, f
     let (explored, dense) = (setup.explored(), setup.finishes_apart());
     let (mut drawn, draws) = drawn(common, index, &mut spender);
     round.draws = draws;
-    let first_look = setup.coarse.is_some() && common.first_of_stage + index < DENSE_BATCHES * BATCH;
+    let first_look = dense && setup.coarse.is_some() && common.first_of_stage + index < DENSE_BATCHES * BATCH;
     let (shorts, middles) = if first_look { (DENSE_SHORT, DENSE_MIDDLE) } else { (SHORT, MIDDLE) };
     by_merit(&mut drawn, shorts);
     let spare = drawn.first().cloned();
@@ -269,12 +273,9 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, f
                 break;
             }
             // A better one has been finished, in this round or before it.
-            if setup.is_worth_finishing(*merit, best)
-                && let Some(finished) = finish(setup, (*merit, start), &mut spender)
-            {
-                let exact = finished.exact;
-                round.finished.push(finished);
-                if exact {
+            if setup.is_worth_finishing(*merit, best) {
+                round.finished.extend(finish(setup, (*merit, start), &mut spender));
+                if round.is_exact() {
                     found.fetch_min(index, Ordering::Relaxed);
                     break;
                 }
@@ -285,33 +286,41 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, f
     round
 }
 
-/// Fits an end on the explored points to all points; `None` if its positions cannot be refined to them.
-fn finish(
-    setup: &Setup<'_>,
-    (explored, start): (f64, &Start),
-    spender: &mut Spender<'_>,
-) -> Option<Finished> {
-    let mut start = match setup.coarse {
-        None => start.clone(),
-        Some(coarse) => coarse.refine(setup.problem, start)?,
+/// Fits an end on the explored points to all points: under the stricter requirements that were explored, if there are
+/// any, and on from there without them. The first of these ends may be accepted where the second is not. Empty if its
+/// positions cannot be refined to all points.
+fn finish(setup: &Setup<'_>, (explored, start): (f64, &Start), spender: &mut Spender<'_>) -> Vec<Finished> {
+    let start = match setup.coarse {
+        None => Some(start.clone()),
+        Some(coarse) => coarse.refine(setup.problem, start),
     };
-    let fitted = spender.fit_as_required(setup.problem, start.clone(), LONG_FIT);
-    let mut fitted = match fitted {
-        Some(end) => end,
-        // Out of budget: taken as it is, with its error on all points.
-        None => (promise(setup.problem, &mut start)?, start),
-    };
-    if setup.finishes_apart() {
-        fitted = spender.at_best_places(setup.problem, fitted, LONG_FIT);
+    let Some(mut start) = start else { return Vec::new() };
+    let mut all = Vec::with_capacity(2);
+    for problem in setup.stricter.into_iter().chain([setup.problem]) {
+        let end = match spender.fit_as_required(problem, start.clone(), LONG_FIT) {
+            Some(end) => Some(end),
+            // Out of budget: taken as it is, with its error on all points.
+            None => promise(setup.problem, &mut start).map(|merit| (merit, start.clone())),
+        };
+        let Some(mut end) = end else { break };
+        if setup.finishes_apart() {
+            end = spender.at_best_places(problem, end, LONG_FIT);
+        }
+        start.clone_from(&end.1);
+        all.push(judged_if_exact(setup, explored, end));
     }
-    let (merit, start) = fitted;
+    all
+}
+
+/// Returns an end on all points; it is judged at once if it is exact and one answer is wanted.
+fn judged_if_exact(setup: &Setup<'_>, explored: f64, (merit, start): (f64, Start)) -> Finished {
     let mut end = End { start, merit, judged: false, verdict: None };
     if setup.single && merit <= setup.exact {
         end.judge(setup.problem);
     }
     let is_exact = |c: &Candidate| c.accepted && searched(setup.problem, c) <= setup.exact;
     let exact = end.verdict.as_ref().is_some_and(is_exact);
-    Some(Finished { explored, end, exact })
+    Finished { explored, end, exact }
 }
 
 /// Returns the ends of rounds on the explored points that can still matter and have not been finished in earlier batches
@@ -345,13 +354,13 @@ pub(super) fn finished(
     (index, end): (u64, (f64, &Start)),
     allowance: u64,
     found: &AtomicU64,
-) -> (Option<Finished>, Evaluations) {
+) -> (Vec<Finished>, Evaluations) {
     let mut spender = Spender::new(context, allowance);
     if found.load(Ordering::Relaxed) < index {
-        return (None, spender.cost);
+        return (Vec::new(), spender.cost);
     }
     let done = finish(setup, end, &mut spender);
-    if done.as_ref().is_some_and(|done| done.exact) {
+    if done.iter().any(|done| done.exact) {
         found.fetch_min(index, Ordering::Relaxed);
     }
     (done, spender.cost)

@@ -1,6 +1,6 @@
 //! The check of a saved state, and the verdicts on its ends.
 
-use crate::synthesis::constants::free::{BATCH, WHOLE_MOST};
+use crate::synthesis::constants::free::BATCH;
 use crate::synthesis::multistart::judged;
 use crate::synthesis::states::{End, FreeState};
 use crate::task::Problem;
@@ -12,20 +12,15 @@ impl FreeState {
         self.stages.iter().map(|stage| stage.index).sum::<u64>() == self.counts.batch * BATCH
     }
 
-    /// Returns whether the state can be one of this problem's; `points` is the number of points that the first stage
-    /// explores.
-    pub(super) fn is_of(&self, problem: &Problem, points: usize) -> bool {
+    /// Returns whether the state can be one of this problem's; `points` are the numbers of points that its stages
+    /// explore.
+    pub(super) fn is_of(&self, problem: &Problem, points: &[usize]) -> bool {
         let n = problem.task().len();
-        let stages = self.stages.len();
-        let whole = (points != n && n <= WHOLE_MOST).then_some(n);
-        let grouped = (points != n).then_some(points);
-        let all: Vec<usize> =
-            [Some(points), whole, grouped, grouped, grouped].into_iter().flatten().collect();
-        let possible = (1..=all.len()).contains(&stages);
-        let mut explored = self.stages.iter().zip(all);
+        let possible = (1..=points.len()).contains(&self.stages.len());
+        let mut explored = self.stages.iter().zip(points);
         possible
             && self.is_counted()
-            && explored.all(|(stage, n)| stage.leading.iter().all(|(_, start)| start.positions.len() == n))
+            && explored.all(|(stage, n)| stage.leading.iter().all(|(_, start)| start.positions.len() == *n))
             && self.ends.iter().all(|end| end.start.positions.len() == n)
     }
 

@@ -24,15 +24,15 @@ use super::constants::front::{
     SPARE,
 };
 use super::multistart::Effort;
-use super::tightened::{LIMITED, Tightened, Tighter, fitted};
-use super::{Context, Progress, SearchOutcome, plan};
+use super::tightened::{LIMITED, Tightened, Tighter, fitted, searched_anew};
+use super::{Context, Progress};
 use crate::judge::assess::assess;
 use crate::judge::figures::figures;
 use crate::judge::rank::chosen;
 use crate::judge::trade_off::{knees, members, undominated};
 use crate::record::{Axis, Candidate, Evaluations, Figures, Front, Member, Reason};
 use crate::task::Problem;
-use crate::task::spec::{Method, Objective};
+use crate::task::spec::Objective;
 use archive::Archive;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -179,25 +179,16 @@ impl<'a> Search<'a> {
 
     /// Searches anew under tightened limits, and takes what was found into the archive.
     fn search_anew(&mut self) {
-        let (context, problem) = (self.context, self.context.problem);
-        let one = |limits: &Tighter| -> Option<(Tighter, SearchOutcome)> {
-            let mut spec = limits.of(problem)?.spec().clone();
-            spec.solve.evaluations = SEARCH;
-            spec.solve.method = Method::LeastSquares;
-            // Tolerances and the largest deviation are left to the fits that follow.
-            spec.task.path.tolerance = None;
-            spec.solve.objective = Objective::SumOfSquares;
-            spec.solve.candidates = ANSWERS;
-            let tight = Problem::new(spec).ok()?;
-            Some((*limits, plan::approximate(context.of(&tight).silent()).ok()?))
-        };
-        let searches = targets::searched(&self.limited, problem.task().size());
-        let found: Vec<Option<(Tighter, SearchOutcome)>> = searches.par_iter().map(one).collect();
-        for (limits, outcome) in found.into_iter().flatten() {
-            self.evaluations += outcome.evaluations.objective;
-            let judged = |c: &Candidate| assess(problem, &c.linkage, &c.crank_deg, &c.t1_at);
-            let answers: Vec<Option<Candidate>> = outcome.candidates.par_iter().map(judged).collect();
-            self.take(answers.into_iter().flatten().map(|c| (c, limits)).collect());
+        let context = self.context;
+        let searches = targets::searched(&self.limited, context.problem.task().size());
+        // At most half of all evaluations.
+        let each = SEARCH.min(self.allowance / (2 * searches.len().max(1) as u64)).max(1);
+        let one = |limits: &Tighter| searched_anew(context, limits, each, ANSWERS);
+        let found: Vec<_> = searches.par_iter().map(one).collect();
+        for (limits, found) in searches.into_iter().zip(found) {
+            let Some((answers, evaluations)) = found else { continue };
+            self.evaluations += evaluations;
+            self.take(answers.into_iter().map(|c| (c, limits)).collect());
         }
     }
 

@@ -5,6 +5,7 @@ use crate::judge::trade_off::Scales;
 use crate::record::{Axis, Figures};
 use crate::synthesis::constants::front::{
     ANCHOR_DEG, ANCHOR_PARTS, COMPACT, GAPS, LEAST_GAP, LEAST_PUSH, PUSH_DEG, PUSH_PART, STEEP_DEG,
+    STEEPEST_DEG,
 };
 use crate::synthesis::tightened::Tighter;
 use serde::{Deserialize, Serialize};
@@ -99,7 +100,11 @@ pub(super) fn searched(limited: &[Axis], size: f64) -> Vec<Tighter> {
     let all = compact.iter().copied().chain([Tighter::default()]);
     let angles: Vec<Tighter> =
         all.filter(|_| steep).map(|limits| limits.with(Axis::Transmission, STEEP_DEG)).collect();
-    compact.into_iter().chain(angles).collect()
+    let longest = compact.last().copied();
+    let steepest = longest.into_iter().chain([Tighter::default()]).filter(|_| steep);
+    let steepest: Vec<Tighter> =
+        steepest.map(|limits| limits.with(Axis::Transmission, STEEPEST_DEG)).collect();
+    compact.into_iter().chain(angles).chain(steepest).collect()
 }
 
 /// Returns the targets of the next generation; empty if nothing is left to try.
@@ -178,8 +183,9 @@ fn gaps(axes: &[Axis], members: &[(Entry, Figures)]) -> Vec<(usize, usize)> {
     for i in 0..n {
         for j in i + 1..n {
             let d = distance[i][j];
+            let both = distance[i].iter().zip(&distance[j]);
             let lonely = d > LEAST_GAP * LEAST_GAP
-                && (0..n).all(|k| k == i || k == j || distance[i][k].max(distance[j][k]) >= d);
+                && both.fold(true, |far, (one, other)| far & (one.max(*other) >= d));
             if lonely {
                 pairs.push((d, i, j));
             }

@@ -122,6 +122,37 @@ pub enum Derived {
     FollowerSide,
 }
 
+/// The derivatives of the shape by the design vector, at one design.
+#[derive(Clone, Copy, Debug)]
+pub struct ChainRule {
+    /// The ground length, and the cosine and sine of its direction, if these are the coordinates.
+    ground: Option<[f64; 3]>,
+    /// The derivatives of (coupler_x, coupler_y) by b, d and e, if d and e are the coordinates.
+    coupler: Option<[[f64; 2]; 3]>,
+}
+
+impl ChainRule {
+    /// Returns the derivative by the design vector from the one by the shape (Ax, Ay, Bx, By, a, b, c, coupler_x,
+    /// coupler_y) and by the crank angle's offset.
+    #[inline]
+    pub fn by_design(&self, row: &[f64; SHAPE], by_offset: f64) -> Design {
+        let mut out = [0.0; DESIGN];
+        out[..SHAPE].copy_from_slice(row);
+        out[OFFSET] = by_offset;
+        if let Some([ground, cos, sin]) = self.ground {
+            out[0] = row[0] + row[2];
+            out[1] = row[1] + row[3];
+            out[2] = row[2] * cos + row[3] * sin;
+            out[3] = ground * (row[3] * cos - row[2] * sin);
+        }
+        if let Some(columns) = self.coupler {
+            let [by_b, by_d, by_e] = columns.map(|[x, y]| row[7] * x + row[8] * y);
+            (out[5], out[7], out[8]) = (row[5] + by_b, by_d, by_e);
+        }
+        out
+    }
+}
+
 /// The set of admissible designs: coordinates, bounds and derived bounds.
 #[derive(Clone, Debug)]
 pub struct DesignSpace {
@@ -356,31 +387,29 @@ impl DesignSpace {
         [a.re, a.im, g_1, g_2, shape.crank, shape.coupler, shape.follower, q_1, q_2, offset]
     }
 
-    /// Returns the derivative by the design vector from the one by the shape (Ax, Ay, Bx, By, a, b, c, coupler_x,
-    /// coupler_y) and by the crank angle's offset.
-    pub fn pull_back(&self, x: &Design, shape: &Shape, row: &[f64; SHAPE], by_offset: f64) -> Design {
-        let mut out = [0.0; DESIGN];
-        out[..SHAPE].copy_from_slice(row);
-        out[OFFSET] = by_offset;
-        if self.ground == GroundChart::Polar {
-            let (sin, cos) = x[3].sin_cos();
-            out[0] = row[0] + row[2];
-            out[1] = row[1] + row[3];
-            out[2] = row[2] * cos + row[3] * sin;
-            out[3] = x[2] * (row[3] * cos - row[2] * sin);
-        }
-        if let CouplerChart::Distances(_) = self.coupler {
-            // coupler_x = (d^2 + b^2 - e^2)/(2b), coupler_y = t2 sqrt(d^2 - coupler_x^2)
-            let (b, d, e) = (x[5], x[7], x[8]);
-            let z = shape.offset;
-            let floor = 1e-9 * (d + b);
-            let z_y = if z.im.abs() < floor { floor.copysign(z.im) } else { z.im };
-            let column = |along: f64, d_d: f64| row[7] * along + row[8] * ((d * d_d - z.re * along) / z_y);
-            out[5] = row[5] + column((b * b - d * d + e * e) / (2.0 * b * b), 0.0);
-            out[7] = column(d / b, 1.0);
-            out[8] = column(-e / b, 0.0);
-        }
-        out
+    /// Returns the chain rule from the shape to the design vector, at a design.
+    pub fn chain_rule(&self, x: &Design, shape: &Shape) -> ChainRule {
+        let ground = match self.ground {
+            GroundChart::Pivot => None,
+            GroundChart::Polar => {
+                let (sin, cos) = x[3].sin_cos();
+                Some([x[2], cos, sin])
+            }
+        };
+        let coupler = match self.coupler {
+            CouplerChart::Offset => None,
+            CouplerChart::Distances(_) => {
+                // coupler_x = (d^2 + b^2 - e^2)/(2b), coupler_y = t2 sqrt(d^2 - coupler_x^2)
+                let (b, d, e) = (x[5], x[7], x[8]);
+                let z = shape.offset;
+                let floor = 1e-9 * (d + b);
+                let z_y = if z.im.abs() < floor { floor.copysign(z.im) } else { z.im };
+                let column = |along: f64, d_d: f64| [along, (d * d_d - z.re * along) / z_y];
+                let by_b = column((b * b - d * d + e * e) / (2.0 * b * b), 0.0);
+                Some([by_b, column(d / b, 1.0), column(-e / b, 0.0)])
+            }
+        };
+        ChainRule { ground, coupler }
     }
 
     /// Clamps a linkage's pivots and lengths exactly to their bounds if rounding took them out.

@@ -4,13 +4,15 @@
 //! The offset is an unknown ([`AngleOffset::Free`]), zero ([`AngleOffset::Fixed`]) or the direction of the
 //! ground line ([`AngleOffset::Ground`], which adds its derivative (<i g, dB - dA>)/|AB|).
 
-use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape, unit};
+use super::design_space::{ChainRule, DESIGN, Design, DesignSpace, SHAPE, Shape, unit};
 use super::rows::{Motion, Requirements};
 use super::torus::Positions;
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::gradient::{Frame, shape_gradient};
 use crate::mechanism::{Complex, point, turned, xy};
-use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, MOST_OWN, PointBlock};
+use crate::numbers::optimise::levenberg_marquardt::{
+    BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
+};
 use crate::task::{AngleOffset, Problem, Setting, Timing};
 use std::f64::consts::TAU;
 
@@ -86,10 +88,9 @@ impl<'a> TimedFit<'a> {
     }
 
     /// Returns the derivative by the design vector from those by the shape and by the crank angle.
-    fn pull_back(
+    fn by_design(
         &self,
-        x: &Design,
-        shape: &Shape,
+        rule: &ChainRule,
         mut row: [f64; SHAPE],
         by_crank: f64,
         by_ground_angle: Complex,
@@ -105,7 +106,7 @@ impl<'a> TimedFit<'a> {
                 row[3] += by_crank * by_ground_angle.im;
             }
         }
-        self.space.pull_back(x, shape, &row, by_offset)
+        rule.by_design(&row, by_offset)
     }
 }
 
@@ -146,7 +147,7 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
         let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(x, &shape));
         let task = self.problem.task();
-        let by_ground_angle = Self::by_ground_angle(&shape);
+        let (rule, by_ground_angle) = (self.space.chain_rule(x, &shape), Self::by_ground_angle(&shape));
         computed(task.len());
         for ((phase, target), weight) in self.phases.iter().zip(task.points()).zip(task.weights()) {
             let crank = phase * turn;
@@ -162,7 +163,7 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
             };
             let jacobian = [|z: Complex| -z.re, |z: Complex| -z.im].map(|component| {
                 let (row, by_crank) = (gradient.shape.map(component), component(gradient.crank_angle));
-                self.pull_back(x, &shape, row, by_crank, by_ground_angle)
+                self.by_design(&rule, row, by_crank, by_ground_angle)
             });
             let residual = target - p;
             each(&PointBlock { residual: xy(residual), jacobian, tangent: [0.0, 0.0], weight: *weight });
@@ -174,13 +175,13 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
         true
     }
 
-    fn constraints(&self, x: &Design, _: &Positions, each: &mut dyn FnMut(&ConstraintRow<DESIGN>)) {
+    fn constraints(&self, x: &Design, _: &Positions, each: &mut EachConstraint<'_, DESIGN>) {
         let Some(shape) = self.space.shape(x) else { return };
-        let by_ground_angle = Self::by_ground_angle(&shape);
+        let (rule, by_ground_angle) = (self.space.chain_rule(x, &shape), Self::by_ground_angle(&shape));
         self.requirements.rows(self.setting.aim, &shape, &self.motion(x, &shape), &mut |row| {
-            each(&ConstraintRow {
+            each(row.value, &|| ConstraintRow {
                 value: row.value,
-                gradient: self.pull_back(x, &shape, row.shape, row.by_turn(), by_ground_angle),
+                gradient: self.by_design(&rule, row.shape, row.by_turn(), by_ground_angle),
                 own: [None; MOST_OWN],
             });
         });

@@ -14,12 +14,14 @@
 //! The tangents are eliminated point by point in [`crate::numbers::optimise::levenberg_marquardt`].
 
 use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape};
-use super::rows::{Motion, Place, Requirements, assembly_of};
+use super::rows::{Motion, Place, Requirements, Row, assembly_of};
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::{linkage_type, ways_round};
 use crate::mechanism::{AssemblyMode, Complex, LinkageType, dot, turned, xy};
 use crate::numbers::arithmetic::dispatch::vectorised;
-use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, MOST_OWN, PointBlock};
+use crate::numbers::optimise::levenberg_marquardt::{
+    BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
+};
 use crate::task::{Problem, Setting};
 
 use crate::task::defect::ORDER_TOLERANCE;
@@ -134,12 +136,12 @@ impl<'a> TorusFit<'a> {
         let Some(shape) = self.space.shape(x) else { return false };
         let on = Loop::of(&shape);
         computed(RETURN_STEPS * positions.len());
-        let mut columns = Columns::gather(positions);
+        let mut blocks = Blocks::gather(positions);
         let settled = vectorised(
             #[inline(always)]
-            || columns.settle(&on),
+            || blocks.settle(&on),
         );
-        columns.scatter(positions);
+        blocks.scatter(positions);
         settled
     }
 }
@@ -274,41 +276,47 @@ fn turn(x: f64, y: f64, angle: f64) -> (f64, f64) {
     (x * unit, y * unit)
 }
 
-/// Positions as a structure of arrays: the loops over them are plain ones that become vector instructions.
-struct Columns([Vec<f64>; 4]);
+/// The number of positions in a block.
+const LANES: usize = 8;
 
-impl Columns {
-    fn gather(positions: &[[Complex; 2]]) -> Columns {
-        let column = |of: fn(&[Complex; 2]) -> f64| positions.iter().map(of).collect();
-        Columns([column(|p| p[0].re), column(|p| p[0].im), column(|p| p[1].re), column(|p| p[1].im)])
+/// Positions as blocks of e_x, e_y, u_x, u_y, each of [`LANES`] positions, so that the loops over a block become vector
+/// instructions. The last block is filled up with the last position.
+struct Blocks(Vec<[[f64; LANES]; 4]>);
+
+impl Blocks {
+    fn gather(positions: &[[Complex; 2]]) -> Blocks {
+        let block = |part: &[[Complex; 2]]| {
+            let mut block = [[0.0; LANES]; 4];
+            for lane in 0..LANES {
+                let [e, u] = part[lane.min(part.len() - 1)];
+                (block[0][lane], block[1][lane]) = (e.re, e.im);
+                (block[2][lane], block[3][lane]) = (u.re, u.im);
+            }
+            block
+        };
+        Blocks(positions.chunks(LANES).map(block).collect())
     }
 
     fn scatter(&self, positions: &mut [[Complex; 2]]) {
-        let Columns([ex, ey, ux, uy]) = self;
-        for (i, p) in positions.iter_mut().enumerate() {
-            *p = [Complex::new(ex[i], ey[i]), Complex::new(ux[i], uy[i])];
+        for (part, [ex, ey, ux, uy]) in positions.chunks_mut(LANES).zip(&self.0) {
+            for (lane, position) in part.iter_mut().enumerate() {
+                *position = [Complex::new(ex[lane], ey[lane]), Complex::new(ux[lane], uy[lane])];
+            }
         }
-    }
-
-    /// Returns e_x, e_y, u_x, u_y as slices of one length.
-    #[inline(always)]
-    fn parts(&mut self) -> [&mut [f64]; 4] {
-        let Columns([ex, ey, ux, uy]) = self;
-        let n = ex.len();
-        [&mut ex[..n], &mut ey[..n], &mut ux[..n], &mut uy[..n]]
     }
 
     /// Moves each position along its own curve by `forward` tau.
     #[inline(always)]
     fn step(&mut self, on: &Loop, forward: f64, tau: &[f64]) {
-        let [ex, ey, ux, uy] = self.parts();
-        let n = ex.len();
-        let tau = &tau[..n];
-        for i in 0..n {
-            let (_, by_e, by_u) = on.frame([ex[i], ey[i], ux[i], uy[i]]);
-            let step = forward * tau[i] / (by_e * by_e + by_u * by_u).sqrt();
-            (ex[i], ey[i]) = turn(ex[i], ey[i], step * by_u);
-            (ux[i], uy[i]) = turn(ux[i], uy[i], -step * by_e);
+        for (tau, [ex, ey, ux, uy]) in tau.chunks(LANES).zip(&mut self.0) {
+            let mut steps = [tau[tau.len() - 1]; LANES];
+            steps[..tau.len()].copy_from_slice(tau);
+            for i in 0..LANES {
+                let (_, by_e, by_u) = on.frame([ex[i], ey[i], ux[i], uy[i]]);
+                let step = forward * steps[i] / (by_e * by_e + by_u * by_u).sqrt();
+                (ex[i], ey[i]) = turn(ex[i], ey[i], step * by_u);
+                (ux[i], uy[i]) = turn(ux[i], uy[i], -step * by_e);
+            }
         }
     }
 
@@ -316,30 +324,32 @@ impl Columns {
     /// not get there.
     #[inline(always)]
     fn settle(&mut self, on: &Loop) -> bool {
-        let [ex, ey, ux, uy] = self.parts();
-        let n = ex.len();
         let mut limit = on.near;
         for round in 0..=RETURN_STEPS {
-            let mut off = 0_u64;
-            for i in 0..n {
-                let miss = on.frame([ex[i], ey[i], ux[i], uy[i]]).0.abs();
-                // A NaN miss is not a position.
-                off += u64::from(miss > limit || miss.is_nan());
+            let mut off = [0_u64; LANES];
+            for [ex, ey, ux, uy] in &self.0 {
+                for i in 0..LANES {
+                    let miss = on.frame([ex[i], ey[i], ux[i], uy[i]]).0.abs();
+                    // A NaN miss is not a position.
+                    off[i] |= u64::from(miss > limit || miss.is_nan());
+                }
             }
-            if off == 0 {
+            if off == [0; LANES] {
                 return true;
             }
             if round == RETURN_STEPS {
                 break;
             }
-            for i in 0..n {
-                let (miss, by_e, by_u) = on.frame([ex[i], ey[i], ux[i], uy[i]]);
-                let n2 = by_e * by_e + by_u * by_u;
-                let long = (miss * miss / n2).sqrt();
-                let step = -miss / (n2 * if long > 1.0 { long } else { 1.0 });
-                let step = if miss.abs() <= on.near { 0.0 } else { step };
-                (ex[i], ey[i]) = turn(ex[i], ey[i], step * by_e);
-                (ux[i], uy[i]) = turn(ux[i], uy[i], step * by_u);
+            for [ex, ey, ux, uy] in &mut self.0 {
+                for i in 0..LANES {
+                    let (miss, by_e, by_u) = on.frame([ex[i], ey[i], ux[i], uy[i]]);
+                    let n2 = by_e * by_e + by_u * by_u;
+                    let long = (miss * miss / n2).sqrt();
+                    let step = -miss / (n2 * if long > 1.0 { long } else { 1.0 });
+                    let step = if miss.abs() <= on.near { 0.0 } else { step };
+                    (ex[i], ey[i]) = turn(ex[i], ey[i], step * by_e);
+                    (ux[i], uy[i]) = turn(ux[i], uy[i], step * by_u);
+                }
             }
             if round + 2 == RETURN_STEPS {
                 // Rounding may keep a position from the last digit.
@@ -362,6 +372,40 @@ impl TorusFit<'_> {
         let [e, u] = position;
         let miss = [-y.re, -y.im, y.re, y.im, -dot(y, e), -dot(y, u), shape.follower, 0.0, 0.0];
         (miss.map(|h| h * by_e / n2), self.forward() * by_u / n2.sqrt())
+    }
+
+    /// Returns the row of a requirement with its derivatives by the design and by the points' own steps; `ends` are the
+    /// points at which the motion begins and ends.
+    fn constraint(
+        &self,
+        row: &Row,
+        x: &Design,
+        shape: &Shape,
+        state: &Positions,
+        ends: Option<[usize; 2]>,
+    ) -> ConstraintRow<DESIGN> {
+        let (mut by_shape, mut own) = (row.shape, [None; MOST_OWN]);
+        for (turn, own) in row.turns.iter().zip(&mut own) {
+            let point = match turn.place {
+                Place::Anywhere => None,
+                Place::First => ends.map(|[first, _]| first),
+                Place::Last => ends.map(|[_, last]| last),
+                Place::Position(j) => Some(j),
+            };
+            if let Some(j) = point {
+                // The crank angle is the point's: it moves with the return to the curve and with the point's step.
+                let (by_return, by_step) = self.crank_of(shape, state[j]);
+                for (out, by) in by_shape.iter_mut().zip(by_return) {
+                    *out += turn.by * by;
+                }
+                *own = Some((j, turn.by * by_step));
+            }
+        }
+        ConstraintRow {
+            value: row.value,
+            gradient: self.space.chain_rule(x, shape).by_design(&by_shape, 0.0),
+            own,
+        }
     }
 }
 
@@ -390,7 +434,7 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
 
     fn linearise(&self, x: &Design, state: &Positions, each: &mut dyn FnMut(&PointBlock<DESIGN>)) -> bool {
         let Some(shape) = self.space.shape(x) else { return false };
-        let task = self.problem.task();
+        let (task, rule) = (self.problem.task(), self.space.chain_rule(x, &shape));
         computed(task.len());
         for ((position, target), weight) in state.iter().zip(task.points()).zip(task.weights()) {
             let [e, u] = *position;
@@ -415,8 +459,8 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
                 u,
                 turned(u),
             ];
-            let jacobian = [columns.map(|z| -z.re), columns.map(|z| -z.im)]
-                .map(|row| self.space.pull_back(x, &shape, &row, 0.0));
+            let jacobian =
+                [columns.map(|z| -z.re), columns.map(|z| -z.im)].map(|row| rule.by_design(&row, 0.0));
             let p = shape.crank_pivot + e * shape.crank + u * shape.offset;
             let tangent = tangent * -self.forward();
             each(&PointBlock { residual: xy(target - p), jacobian, tangent: xy(tangent), weight: *weight });
@@ -447,15 +491,15 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
         let (from, to) = (Loop::of(&old), Loop::of(&new));
         let forward = self.forward();
         computed(RETURN_STEPS * state.len());
-        let mut columns = Columns::gather(state);
+        let mut blocks = Blocks::gather(state);
         let settled = vectorised(
             #[inline(always)]
             || {
-                columns.step(&from, forward, tau);
-                columns.settle(&to)
+                blocks.step(&from, forward, tau);
+                blocks.settle(&to)
             },
         );
-        columns.scatter(out);
+        blocks.scatter(out);
         settled
     }
 
@@ -494,32 +538,11 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
         }
     }
 
-    fn constraints(&self, x: &Design, state: &Positions, each: &mut dyn FnMut(&ConstraintRow<DESIGN>)) {
+    fn constraints(&self, x: &Design, state: &Positions, each: &mut EachConstraint<'_, DESIGN>) {
         let Some(shape) = self.space.shape(x) else { return };
         let (motion, ends) = self.motion_between(&shape, state);
         self.requirements.rows(self.setting.aim, &shape, &motion, &mut |row| {
-            let (mut by_shape, mut own) = (row.shape, [None; MOST_OWN]);
-            for (turn, own) in row.turns.iter().zip(&mut own) {
-                let point = match turn.place {
-                    Place::Anywhere => None,
-                    Place::First => ends.map(|[first, _]| first),
-                    Place::Last => ends.map(|[_, last]| last),
-                    Place::Position(j) => Some(j),
-                };
-                if let Some(j) = point {
-                    // The crank angle is the point's: it moves with the return to the curve and with the point's step.
-                    let (by_return, by_step) = self.crank_of(&shape, state[j]);
-                    for (out, by) in by_shape.iter_mut().zip(by_return) {
-                        *out += turn.by * by;
-                    }
-                    *own = Some((j, turn.by * by_step));
-                }
-            }
-            each(&ConstraintRow {
-                value: row.value,
-                gradient: self.space.pull_back(x, &shape, &by_shape, 0.0),
-                own,
-            });
+            each(row.value, &|| self.constraint(row, x, &shape, state, ends));
         });
     }
 }

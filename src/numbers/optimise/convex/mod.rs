@@ -179,7 +179,7 @@ fn look<const N: usize, P: BlockLeastSquares<N>>(
     if !problem.linearise(&x, &state, &mut |block| blocks.push(*block)) {
         return None;
     }
-    problem.constraints(&x, &state, &mut |row| rows.push(row.followed(&blocks, 0.0)));
+    problem.constraints(&x, &state, &mut |_, row| rows.push(row().followed(&blocks, 0.0)));
     let deviation = goal.tolerances().map_or(0.0, |tolerances| {
         blocks.iter().zip(tolerances).fold(0.0, |m: f64, (b, tol)| m.max(norm(b.residual) / tol))
     });

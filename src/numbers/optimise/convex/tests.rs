@@ -1,6 +1,6 @@
 //! Tests against known optima; no derivative is taken from the solver itself.
 
-use super::super::levenberg_marquardt::MOST_OWN;
+use super::super::levenberg_marquardt::{EachConstraint, MOST_OWN};
 use super::*;
 
 type Residual<'a> = Box<dyn Fn(&[f64; 2]) -> [f64; 2] + 'a>;
@@ -44,10 +44,11 @@ impl BlockLeastSquares<2> for Plain<'_> {
     fn retract(&self, _: &[f64; 2], (): &(), _: &[f64], _: &[f64; 2], (): &mut ()) -> bool {
         true
     }
-    fn constraints(&self, x: &[f64; 2], (): &(), each: &mut dyn FnMut(&ConstraintRow<2>)) {
+    fn constraints(&self, x: &[f64; 2], (): &(), each: &mut EachConstraint<'_, 2>) {
         for g in &self.rows {
             let by = |i| (g(&shifted(x, i, H)) - g(&shifted(x, i, -H))) / (2.0 * H);
-            each(&ConstraintRow { value: g(x), gradient: [by(0), by(1)], own: [None; MOST_OWN] });
+            let value = g(x);
+            each(value, &|| ConstraintRow { value, gradient: [by(0), by(1)], own: [None; MOST_OWN] });
         }
     }
 }

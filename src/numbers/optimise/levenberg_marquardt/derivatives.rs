@@ -13,7 +13,7 @@ fn linearised<const N: usize, P: BlockLeastSquares<N>>(
 ) -> Option<Linearised<N>> {
     let (mut blocks, mut rows) = (Vec::new(), Vec::new());
     let complete = problem.linearise(x, state, &mut |block| blocks.push(*block));
-    problem.constraints(x, state, &mut |row| rows.push(*row));
+    problem.constraints(x, state, &mut |_, row| rows.push(row()));
     complete.then_some((blocks, rows))
 }
 

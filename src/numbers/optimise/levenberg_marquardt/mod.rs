@@ -93,6 +93,9 @@ impl<const N: usize> ConstraintRow<N> {
     }
 }
 
+/// A function that takes the value g of an inequality, and a function that computes its row.
+pub type EachConstraint<'a, const N: usize> = dyn FnMut(f64, &dyn Fn() -> ConstraintRow<N>) + 'a;
+
 /// A least-squares problem with one block per point.
 pub trait BlockLeastSquares<const N: usize> {
     /// The values of the points' own unknowns.
@@ -141,8 +144,9 @@ pub trait BlockLeastSquares<const N: usize> {
         work()
     }
 
-    /// Passes the inequalities to `each`, always the same number and in the same order.
-    fn constraints(&self, x: &[f64; N], state: &Self::State, each: &mut dyn FnMut(&ConstraintRow<N>));
+    /// Passes the inequalities to `each`, always the same number and in the same order: the value, and the row with its
+    /// derivatives, computed only where it is asked for.
+    fn constraints(&self, x: &[f64; N], state: &Self::State, each: &mut EachConstraint<'_, N>);
 }
 
 /// The stopping criteria of [`solve`].
@@ -233,8 +237,8 @@ impl Penalty {
         state: &P::State,
     ) -> f64 {
         let (mut sum, mut i) = (0.0, 0);
-        problem.constraints(x, state, &mut |row| {
-            let lack = self.shift[i] - row.value;
+        problem.constraints(x, state, &mut |value, _| {
+            let lack = self.shift[i] - value;
             i += 1;
             if lack > 0.0 {
                 sum += self.rho * lack * lack;
@@ -251,7 +255,7 @@ pub fn violation<const N: usize, P: BlockLeastSquares<N>>(
     state: &P::State,
 ) -> f64 {
     let mut worst: f64 = 0.0;
-    problem.constraints(x, state, &mut |row| worst = worst.max(-row.value));
+    problem.constraints(x, state, &mut |value, _| worst = worst.max(-value));
     worst
 }
 
@@ -268,7 +272,7 @@ pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
 ) -> LmResult<N, P::State> {
     let x = clamped(start, problem.bounds());
     let mut shift = Vec::new();
-    problem.constraints(&x, &state, &mut |_| shift.push(0.0));
+    problem.constraints(&x, &state, &mut |_, _| shift.push(0.0));
     let unconstrained = shift.is_empty();
     let mut result = LmResult {
         x,
@@ -292,8 +296,8 @@ pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
         }
         let mut i = 0;
         let mut moved: f64 = 0.0;
-        problem.constraints(&result.x, &result.state, &mut |row| {
-            let next = (penalty.shift[i] - row.value).max(0.0);
+        problem.constraints(&result.x, &result.state, &mut |value, _| {
+            let next = (penalty.shift[i] - value).max(0.0);
             moved = moved.max((next - penalty.shift[i]).abs());
             penalty.shift[i] = next;
             i += 1;

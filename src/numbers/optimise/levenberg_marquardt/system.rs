@@ -311,11 +311,11 @@ pub(super) fn assemble<const N: usize, P: BlockLeastSquares<N>>(
     }
     let mut i = 0;
     work.lacking.clear();
-    problem.constraints(&at.x, &at.state, &mut |row| {
-        let lack = penalty.shift[i] - row.value;
+    problem.constraints(&at.x, &at.state, &mut |value, row| {
+        let lack = penalty.shift[i] - value;
         i += 1;
         if lack > 0.0 {
-            let row = row.followed(&work.blocks, nu);
+            let row = row().followed(&work.blocks, nu);
             work.lacking.push((lack, row.gradient));
             add_row(&mut matrix, &mut gradient, penalty.rho, &row.gradient.map(|g| -g), lack);
         }

@@ -11,7 +11,7 @@ pub(super) fn rows(at: &At<'_>, bounds: &[DerivedBound], each: &mut dyn FnMut(&R
         let (low, high) = (bound.limits.0, bound.limits.1);
         let kind = |lower| RowKind::Derived(bound.quantity, lower);
         let (value, row) = match bound.quantity {
-            Derived::Ground => (links[0], at.link_rows[0]),
+            Derived::Ground => (links[0], at.ground_row),
             Derived::CrankSide => at.crank_side(),
             Derived::FollowerSide => at.follower_side(),
             Derived::GroundAngle => {

@@ -232,8 +232,8 @@ struct At<'a> {
     ground: Complex,
     /// The lengths ground, a, b, c.
     links: [f64; 4],
-    /// Their derivatives by the shape.
-    link_rows: [[f64; SHAPE]; 4],
+    /// The derivative of the ground length by the shape.
+    ground_row: [f64; SHAPE],
 }
 
 impl<'a> At<'a> {
@@ -246,12 +246,7 @@ impl<'a> At<'a> {
             motion,
             ground: g,
             links: shape.links(),
-            link_rows: [
-                [-g.re, -g.im, g.re, g.im, 0.0, 0.0, 0.0, 0.0, 0.0],
-                [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-                [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
-                [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
-            ],
+            ground_row: [-g.re, -g.im, g.re, g.im, 0.0, 0.0, 0.0, 0.0, 0.0],
         }
     }
 
@@ -280,12 +275,12 @@ impl<'a> At<'a> {
     /// Returns the row constant + sum of factor times link.
     fn combined(&self, kind: RowKind, factors: [f64; 4], constant: f64) -> Row {
         let mut row = Row::still(kind, constant, [0.0; SHAPE]);
-        for (link, factor) in factors.into_iter().enumerate() {
-            row.value += factor * self.links[link];
-            for (out, by) in row.shape.iter_mut().zip(&self.link_rows[link]) {
-                *out += factor * by;
-            }
+        for (factor, link) in factors.into_iter().zip(self.links) {
+            row.value += factor * link;
         }
+        let [ground, a, b, c] = factors;
+        let by = self.ground_row;
+        row.shape = [ground * by[0], ground * by[1], ground * by[2], ground * by[3], a, b, c, 0.0, 0.0];
         row
     }
 }
