@@ -75,7 +75,7 @@ test("draw, drag, pin, save, reload, restart", async () => {
     });
   });
   const handle = await page.evaluate(() => {
-    const { x, y, width, height } = document.querySelectorAll(".handle")[15].getBoundingClientRect();
+    const { x, y, width, height } = document.querySelectorAll(".handle")[2].getBoundingClientRect();
     return { x, y, width, height };
   });
   const [x, y] = [handle.x + handle.width / 2, handle.y + handle.height / 2];

@@ -513,7 +513,7 @@ test("the main job by keys alone, and by what a screen reader is told", async ()
   await end();
 });
 
-test("after a stroke the whole linkage is on the board; hints are ticked off; every example runs", async () => {
+test("an answer never moves the view; the whole path is on the board; hints are ticked off; every example runs", async () => {
   const { address, end } = await studio("--port", "18488");
   const { page, said, context } = await opened(browser, address);
   const box = await page.locator("#board svg").boundingBox();
@@ -521,14 +521,17 @@ test("after a stroke the whole linkage is on the board; hints are ticked off; ev
     box.x + box.width * (0.75 + 0.18 * Math.cos(t)),
     box.y + box.height * (0.3 + 0.12 * Math.sin(t) + 0.05 * Math.cos(2 * t)),
   ];
+  const scale = () => page.locator(".scale").getAttribute("d");
+  const before = await scale();
   await page.mouse.move(...at(0));
   await page.mouse.down();
   for (let i = 1; i <= 60; i += 1) await page.mouse.move(...at((i * 2 * Math.PI) / 60));
   await page.mouse.up();
   await doing(page, "done");
+  assert.equal(await scale(), before);
   const outside = await page.evaluate(() => {
     const board = document.querySelector("#board svg").getBoundingClientRect();
-    const all = [...document.querySelectorAll(".board .pin, .board .tracer")].map((one) => one.getBoundingClientRect());
+    const all = [...document.querySelectorAll(".target-point")].map((one) => one.getBoundingClientRect());
     return all.filter(
       (one) => one.left < board.left || one.right > board.right || one.top < board.top || one.bottom > board.bottom,
     ).length;

@@ -18,7 +18,9 @@ async function part(name) {
 }
 
 const { moved, ofStroke, ofText, segmentAt } = await part("target");
-const { drawnAnew, pivotsBelow } = await part("task");
+const { drawnAnew, longestTimes, pivotsBelow, withLengthsTimes, withLongest } = await part("task");
+const view = await part("view");
+const words = await part("words");
 const { followed, placeOf } = await part("choice");
 const { Steps } = await part("memory");
 const { resized } = await part("boxes");
@@ -179,4 +181,90 @@ test("a step that is given up is neither behind nor before", () => {
   steps.note("b");
   assert.equal(steps.giveUp(), "b");
   assert.deepEqual([steps.canRedo, steps.undo("b"), steps.undo("a")], [false, "a", null]);
+});
+
+test("a view: pixels and plane, nearer around a point, the same picture of a larger plane", () => {
+  const frame = { width: 800, height: 500 };
+  const opening = view.opening("mm");
+  assert.deepEqual(view.toPixel(opening, frame, [10, 10]), [430, 220]);
+  assert.equal(view.opening("cm").scale, 10 * opening.scale);
+  const one = { x: 12, y: -7, scale: 2.5 };
+  const at = [40, 3];
+  const back = view.toPlane(one, frame, view.toPixel(one, frame, at));
+  assert.ok(Math.hypot(back[0] - at[0], back[1] - at[1]) < 1e-12);
+  const nearer = view.zoomed(one, 2, at);
+  const isSame = (one, other) => one.every((value, k) => Math.abs(value - other[k]) < 1e-9);
+  assert.ok(isSame(view.toPixel(nearer, frame, at), view.toPixel(one, frame, at)));
+  assert.equal(nearer.scale, 5);
+  assert.equal(view.zoomed(one, 1e30).scale, 1e7);
+  const larger = view.rescaled(one, 4);
+  assert.ok(isSame(view.toPixel(larger, frame, [160, 12]), view.toPixel(one, frame, at)));
+  const carried = view.carried(one, [1, 2], [5, -3]);
+  assert.deepEqual([carried.x, carried.y], [8, -2]);
+});
+
+test("a path that is opened fills more than 35 % of the shorter side, with what stands around it if there is room", () => {
+  const frame = { width: 800, height: 500 };
+  const path = [-20, 5, 100, 65];
+  const part = (one) => (120 * one.scale) / 500;
+  const alone = view.onPath(frame, path);
+  assert.ok(part(alone) >= 0.4 && part(alone) <= 0.5);
+  assert.deepEqual([alone.x, alone.y], [40, 35]);
+  const near = [-60, -60, 140, 65];
+  assert.ok(view.isWithin(near, view.windowOf(view.onPath(frame, path, near), frame)));
+  const far = view.onPath(frame, path, [-900, -900, 900, 900]);
+  assert.ok(part(far) >= 0.35);
+  assert.ok(view.isWithin(path, view.windowOf(far, frame)));
+  assert.equal(view.joined([[Number.NaN, 0, 1, 1]]), null);
+});
+
+test("words for a figure: how near, how it transmits, what limits it", () => {
+  assert.deepEqual(words.nearnessInWords({ rms: 0.2, max: 0.5 }, 100), {
+    grade: "good",
+    text: "very close: 0.20 % of the path",
+  });
+  assert.deepEqual(words.nearnessInWords({ rms: 5, max: 8 }, 100), {
+    grade: "poor",
+    text: "rough: misses by 8.0 % of the path",
+  });
+  assert.equal(words.transmissionInWords(31.2).text, "transmission 31° (fair)");
+  assert.equal(words.transmissionInWords(3).grade, "poor");
+  const linkage = { A: [0, 0], B: [30, 0], a: 10, b: 20, c: 300, d: 15, e: 12 };
+  const shown = (rest) => ({ linkage, accepted: true, transmission_deg: 30.0001, link_ratio: 12, ...rest });
+  assert.equal(words.sizeInWords(linkage, 100), "longest link 3 × the path");
+  assert.equal(
+    words.limitedBy(shown(), { longest: 300, transmission: 30, ratio: 20 }),
+    "limited by: longest link, transmission angle",
+  );
+  assert.equal(words.limitedBy(shown(), { longest: null, ratio: 20 }), "");
+  const list = [
+    { shown: shown({ transmission_deg: 31 }), extent: 500 },
+    { shown: shown({ accepted: false, transmission_deg: 80 }), extent: 10 },
+    { shown: shown({ transmission_deg: 60 }), extent: 300 },
+  ];
+  assert.deepEqual(words.marks(list), [["closest"], [], ["smallest", "best transmission"]]);
+  assert.deepEqual(words.marks(list.slice(0, 1)), [[]]);
+});
+
+test("the longest link is a multiple of the path, and all lengths grow together", () => {
+  const square = [
+    [0, 0],
+    [3, 0],
+    [3, 4],
+    [0, 4],
+  ];
+  const task = { name: "square", points: square, closed: true, types: [], seed: 1 };
+  assert.equal(longestTimes(task), 3);
+  const shorter = withLongest(task, 2);
+  assert.equal(shorter.kept["require.longest_max"], "10");
+  assert.equal(longestTimes(shorter), 2);
+  assert.equal(withLongest(shorter, 3).kept, undefined, "the usual one is not asked");
+  assert.equal(longestTimes(withLongest(task, null)), null);
+  assert.equal(longestTimes({ ...task, kept: { "design.a": "[1, 2]" } }), null);
+  const ten = withLengthsTimes({ ...shorter, tolerance: 0.5, pivots_in: [-1, -2, 3, 0] }, 10);
+  assert.deepEqual(ten.points[2], [30, 40]);
+  assert.deepEqual(ten.pivots_in, [-10, -20, 30, 0]);
+  assert.deepEqual([ten.tolerance, longestTimes(ten)], [5, 2]);
+  const anew = drawnAnew(ten, square, true);
+  assert.equal(longestTimes(anew), 2, "of the new path");
 });

@@ -13,13 +13,20 @@ import {
 } from "./boxes";
 import { Figure, type Moving } from "./figures";
 import type { Box, Point, Task } from "./messages";
+import { Overview } from "./overview";
 import { dragging, type Grip, watchPointers } from "./pointers";
 import { ofStroke, segmentAt } from "./target";
-import { sizeOf, toleranceAt } from "./task";
+import { boxOf, longestMax, sizeOf, toleranceAt } from "./task";
 import type { Underlay } from "./underlay";
+import * as view from "./view";
 
 /** A click so near to the path, in pixels, is meant for it. */
 const NEAR = 9;
+
+/** Pixels of what stands under the board. */
+const BESIDE = 128;
+/** Points of a dense path by which it is held. */
+const HANDLES = 10;
 
 export type Tool = "draw" | "points" | BoxKind | "photo-move" | "photo-scale";
 
@@ -62,14 +69,13 @@ export class Board {
   private ghosts: Figure[] = [];
   private width = 600;
   private height = 420;
-  private view = { x: 0, y: 0, scale: 2.4 };
+  private view: view.View = view.opening(undefined);
+  private overview = new Overview();
   private task: Task | null = null;
   private moving: Moving | null = null;
   private pinned: Moving[] = [];
   private corner: Corner | null = null;
   private part = 0;
-  /** Whether the view was chosen by hand. */
-  touched = false;
   tool: Tool = "draw";
   selected = -1;
 
@@ -89,6 +95,7 @@ export class Board {
       this.marks,
       this.stroke,
       this.scaleBar,
+      this.overview.group,
     );
     place.append(this.svg);
     watchPointers(
@@ -100,36 +107,37 @@ export class Board {
       "wheel",
       (event: WheelEvent) => {
         event.preventDefault();
-        this.touched = true;
         this.zoom(Math.exp(-event.deltaY / 400), this.at(event));
       },
       { passive: false },
     );
     this.svg.addEventListener("keydown", (event: KeyboardEvent) => this.key(event));
-    new ResizeObserver(() => this.measure()).observe(place);
+    const sizes = new ResizeObserver(() => this.measure());
+    sizes.observe(place);
+    if (place.parentElement) sizes.observe(place.parentElement);
     this.measure();
   }
 
   private measure() {
     const width = Math.max(this.place.clientWidth, 240);
-    const height = Math.max(Math.min(Math.round(width * (width < 500 ? 1 : 0.68)), innerHeight - 150, 720), 280);
+    // Beside it the controls of the board and the status stay in sight.
+    const room = (this.place.parentElement?.clientHeight || innerHeight * 0.52) - BESIDE;
+    const upright = innerHeight > innerWidth && innerWidth < 761;
+    const height = Math.max(Math.round(upright ? Math.min(width * 0.85, innerHeight * 0.42) : room), 180);
     if (width === this.width && height === this.height) return;
-    this.view.scale *= Math.min(width / this.width, height / this.height);
     Object.assign(this, { width, height });
     setAll(this.svg, { viewBox: `0 0 ${width} ${height}`, width, height });
     this.draw();
   }
 
-  toPixel = ([x, y]: Point): Point => [
-    this.width / 2 + (x - this.view.x) * this.view.scale,
-    this.height / 2 - (y - this.view.y) * this.view.scale,
-  ];
+  private get frame(): view.Frame {
+    return { width: this.width, height: this.height };
+  }
 
-  private toPlane([x, y]: Point): Point {
-    return [
-      this.view.x + (x - this.width / 2) / this.view.scale,
-      this.view.y - (y - this.height / 2) / this.view.scale,
-    ];
+  toPixel = (p: Point): Point => view.toPixel(this.view, this.frame, p);
+
+  private toPlane(p: Point): Point {
+    return view.toPlane(this.view, this.frame, p);
   }
 
   private at(event: { clientX: number; clientY: number }): Point {
@@ -140,51 +148,47 @@ export class Board {
     ]);
   }
 
-  zoom(by: number, around: Point = [this.view.x, this.view.y]) {
-    const scale = Math.min(Math.max(this.view.scale * by, 1e-7), 1e7);
-    const kept = this.view.scale / scale;
-    this.view = {
-      scale,
-      x: around[0] + (this.view.x - around[0]) * kept,
-      y: around[1] + (this.view.y - around[1]) * kept,
-    };
+  zoom(by: number, around?: Point) {
+    this.look(view.zoomed(this.view, by, around));
+  }
+
+  /** The view, which only the user changes. */
+  get looking(): view.View {
+    return this.view;
+  }
+
+  look(at: view.View) {
+    this.view = at;
     this.draw();
   }
 
-  /** Brings target, linkage and pivot box into view. */
+  /** The view of an empty board. */
+  open(unit: string | undefined) {
+    this.look(view.opening(unit));
+  }
+
+  /** Brings the path of a problem that was opened into view, and its boxes as far as the path stays large. */
+  fitPath({ points, pivots_in, footprint_in }: Task) {
+    const path = boxOf(points.filter((p) => p.every(Number.isFinite)));
+    const all = path && view.joined([path, pivots_in, footprint_in].filter((box): box is Box => !!box));
+    if (path && all) this.look(view.onPath(this.frame, path, all));
+  }
+
+  /** Brings target, linkages and boxes of the requirements into view. */
   fit() {
-    const points = this.task?.points ?? [];
-    const box = this.moving?.box() ?? [Infinity, Infinity, -Infinity, -Infinity];
-    const all: Point[] = [...points, [box[0], box[1]], [box[2], box[3]]];
-    for (const kept of [this.task?.pivots_in, this.task?.footprint_in])
-      if (kept) all.push([kept[0], kept[1]], [kept[2], kept[3]]);
-    this.touched = false;
-    const finite = all.filter((p) => p.every(Number.isFinite));
-    if (finite.length === 0) return;
-    const [xs, ys] = [finite.map((p) => p[0]), finite.map((p) => p[1])];
-    const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    const size = Math.max(right - left, high - low, 1e-6);
-    const scale = Math.min(
-      (this.width - 70) / Math.max(right - left, size / 50),
-      (this.height - 80) / Math.max(high - low, size / 50),
-    );
-    this.view = { x: (left + right) / 2, y: (low + high) / 2, scale };
-    this.draw();
+    const boxes = [...this.linkages(), boxOf(this.task?.points ?? []), this.task?.pivots_in, this.task?.footprint_in];
+    const all = view.joined(boxes.filter((box): box is Box => !!box));
+    if (all) this.look(view.around(this.frame, all));
   }
 
-  /** Whether the whole linkage is in view. */
-  get holdsAll(): boolean {
-    const box = this.moving?.box();
-    if (!box?.every(Number.isFinite)) return true;
-    const [[left, top], [right, bottom]] = [this.toPixel([box[0], box[3]]), this.toPixel([box[2], box[1]])];
-    return left > 4 && top > 4 && right < this.width - 4 && bottom < this.height - 4;
+  /** What the linkages that are shown need. */
+  private linkages(): Box[] {
+    return [this.moving, ...this.pinned].flatMap((one) => (one ? [one.box() as Box] : []));
   }
 
   /** What is in view. */
   get window(): Box {
-    const [left, top] = this.toPlane([0, 0]);
-    const [right, bottom] = this.toPlane([this.width, this.height]);
-    return [left, bottom, right, top];
+    return view.windowOf(this.view, this.frame);
   }
 
   show(task: Task, moving: Moving | null, pinned: Moving[]) {
@@ -226,6 +230,9 @@ export class Board {
       ...circles,
       shape("path", { class: "target-line", d: pathThrough(closedLine) }),
     );
+    // A dense path is held at a few places, its ends not among them: there the next stroke may begin.
+    const held = new Set(Array.from({ length: HANDLES }, (_, k) => Math.floor(((k + 0.5) * spots.length) / HANDLES)));
+    if (this.selected >= 0) held.add(this.selected);
     const marks = spots.flatMap(([x, y], i) => {
       const [cx, cy] = [px(x), px(y)];
       const chosen = i === this.selected;
@@ -233,8 +240,10 @@ export class Board {
         class: `target-point${i === 0 ? " first" : ""}${chosen ? " chosen" : ""}`,
         cx,
         cy,
-        r: chosen ? 6.5 : many ? 3.4 : 5,
+        r: chosen ? 6.5 : many ? 1.6 : 5,
       });
+      if (many && !held.has(i)) return [dot];
+      if (many && !chosen) setAll(dot, { r: 4.4 });
       return [dot, shape("circle", { class: "handle", cx, cy, r: many ? 9 : 16, "data-point": i })];
     });
     // The rim of a circle can be drawn outwards and inwards where it does not lie on the point itself; the chosen one's lies on top.
@@ -260,16 +269,25 @@ export class Board {
     });
     this.mechanism.show(this.moving, this.toPixel);
     this.drawBox();
+    this.overview.show(boxOf(task.points), this.moving, this.window, this.frame);
     const length = roundLength((0.2 * this.width) / this.view.scale);
     const y = this.height - 14;
-    this.scaleBar.replaceChildren(
-      shape("path", { class: "scale", d: `M14 ${y - 4}v4h${px(length * this.view.scale)}v-4` }),
-      shape("text", { class: "scale-text", x: px(22 + length * this.view.scale), y }, [
-        `${Number(length.toPrecision(3))}${task.unit ? ` ${task.unit}` : ""}`,
-      ]),
-    );
+    const longest = task.points.length > 2 ? longestMax(task) : null;
+    this.scaleBar.replaceChildren(...this.bar(false, length, y, ""));
+    if (longest !== null) this.scaleBar.append(...this.bar(true, longest, y - 22, "longest link "));
     // Another view of one that stands still.
     this.pose(this.part);
+  }
+
+  /** A length at the rim of the board: of the limit with its words above, as it may run off the board. */
+  private bar(isLimit: boolean, length: number, y: number, what: string) {
+    const right = 14 + length * this.view.scale;
+    const words = `${what}${Number(length.toPrecision(3))}${this.task?.unit ? ` ${this.task.unit}` : ""}`;
+    const place = isLimit ? { x: 18, y: y - 8 } : { x: px(right + 8), y };
+    return [
+      shape("path", { class: isLimit ? "limit" : "scale", d: `M14 ${y - 4}v4H${px(right)}v-4` }),
+      shape("text", { class: isLimit ? "limit-text" : "scale-text", ...place }, [words]),
+    ];
   }
 
   private drawBox() {
@@ -282,6 +300,11 @@ export class Board {
     const [point, corner, rim] = ["point", "corner", "rim"].map((name) => target.getAttribute(`data-${name}`));
     this.svg.focus({ preventScroll: true });
     if (!this.task) return null;
+    const overviewed = target.closest(".overview") && this.overview.pointAt(this.toPixel(this.at(event)));
+    if (overviewed) {
+      this.look({ ...this.view, x: overviewed[0], y: overviewed[1] });
+      return null;
+    }
     if (event.shiftKey) return this.pan(event);
     if (this.tool === "photo-move" && this.underlay.there) return this.moveUnderlay(event);
     if (this.tool === "photo-scale" && this.underlay.there) {
@@ -308,13 +331,7 @@ export class Board {
 
   private pan(start: PointerEvent): Grip {
     const held = this.at(start);
-    this.touched = true;
-    const step = (event: PointerEvent) => {
-      const now = this.at(event);
-      this.view.x += held[0] - now[0];
-      this.view.y += held[1] - now[1];
-      this.draw();
-    };
+    const step = (event: PointerEvent) => this.look(view.carried(this.view, held, this.at(event)));
     return { step, abort: () => {} };
   }
 
@@ -322,14 +339,12 @@ export class Board {
   private pinch(one: PointerEvent, other: PointerEvent) {
     const [p, q] = [this.at(one), this.at(other)];
     const apart = Math.max(Math.hypot(q[0] - p[0], q[1] - p[1]), 1e-9);
-    this.touched = true;
     return (one: PointerEvent, other: PointerEvent) => {
       const now = [this.at(one), this.at(other)];
       this.zoom(Math.hypot(now[1][0] - now[0][0], now[1][1] - now[0][1]) / apart);
       const [a, b] = [this.at(one), this.at(other)];
-      this.view.x += (p[0] + q[0] - a[0] - b[0]) / 2;
-      this.view.y += (p[1] + q[1] - a[1] - b[1]) / 2;
-      this.draw();
+      const middle = (one: Point, other: Point): Point => [(one[0] + other[0]) / 2, (one[1] + other[1]) / 2];
+      this.look(view.carried(this.view, middle(p, q), middle(a, b)));
     };
   }
 
@@ -447,7 +462,6 @@ export class Board {
       this.say(`Point ${this.selected} removed; ${n - 1} are left.`);
       this.hand.remove(this.selected);
     } else if (event.key === "+" || event.key === "-") {
-      this.touched = true;
       this.zoom(event.key === "+" ? 1.25 : 0.8);
     } else if ((event.key === "[" || event.key === "]") && n > 0) {
       const index = Math.max(this.selected, 0);

@@ -34,6 +34,13 @@ export class Moving {
     return this.circuit.map((joints) => joints?.P ?? null);
   }
 
+  /** The links in one of the positions, as a line through the joints. */
+  get links(): Point[] {
+    const { A, B } = this.shown.linkage;
+    const joints = this.circuit.find((one) => one !== null);
+    return joints ? [A, joints.C, joints.D, B] : [A, B];
+  }
+
   /** q at a part (0 to 1) of the motion: round and round, or to and fro over what the points use. */
   at(part: number): number {
     const { cycle } = this;

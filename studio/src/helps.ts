@@ -3,7 +3,7 @@
 import { element, figure, minus } from "../../src/report/html/player/svg.mjs";
 import { changing } from "./focus";
 import type { Relaxation, Task, Value } from "./messages";
-import { EXACT } from "./task";
+import { EXACT, withoutControls } from "./task";
 
 export const NAMES: Record<string, [string, string]> = {
   "require.type": ["driven by", ""],
@@ -111,7 +111,7 @@ export class Kept {
   ) {}
 
   show(task: Task) {
-    const all = Object.entries(task.kept ?? {});
+    const all = withoutControls(task.kept);
     if (task.method && task.method !== EXACT && task.method !== "auto") all.push(["solve.method", task.method]);
     if (task.raw) all.push(["smoothing", `${task.raw.points.length} digitised points, until a point is moved`]);
     if (task.expect) all.push(["expect", knownInWords(task.expect.answer)]);

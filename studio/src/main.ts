@@ -18,6 +18,8 @@ import { Nine } from "./nine";
 import { Pace } from "./pace";
 import { PhotographPanel } from "./photograph";
 import { fillRequirements, listenToRequirements } from "./requirements";
+import { Said } from "./said";
+import { SizeChip } from "./size";
 import { Stays } from "./stays";
 import { inWords, isExact, Strip } from "./strip";
 import { Table } from "./table";
@@ -28,6 +30,7 @@ import {
   settled,
   taskOf,
   withAdded,
+  withLengthsTimes,
   withMoved,
   withoutStale,
   withPoints,
@@ -35,26 +38,32 @@ import {
   withToleranceAt,
 } from "./task";
 import { type Placed, Underlay } from "./underlay";
+import { rescaled, type View } from "./view";
 import { Voice } from "./voice";
 
 /** Seconds of a turn. */
 const TURN = 5;
 const MOST_PINNED = 3;
+/** An answer that is less than so much better than the one that was brought back does not replace it. */
+const BETTER = 0.999;
 
-const TYPES: Record<string, string[]> = {
-  any: [],
-  motor: ["crank-rocker", "double-crank"],
-  "crank-rocker": ["crank-rocker"],
-  "double-crank": ["double-crank"],
-  rocking: ["double-rocker", "triple-rocker", "rocker-crank"],
-};
+/** What a step back brings back. */
+interface State {
+  task: Task;
+  photo: Placed | null;
+  view: View;
+  answer: Answer | null;
+  chosen: { pin: number } | { candidate: number } | null;
+}
 
 const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 const input = (id: string) => byId<HTMLInputElement>(id);
 
 class Page {
   private task: Task = EXAMPLES[0][1];
-  private steps = new Steps<{ task: Task; photo: Placed | null }>();
+  private steps = new Steps<State>();
+  /** The version that a step back or forth brought, with the answer that stood there. */
+  private restored: { version: number; answer: Answer } | null = null;
   private version = 0;
   /** The edit that began this target: what is said of earlier ones belongs to another. */
   private since = 0;
@@ -66,18 +75,17 @@ class Page {
   private moving: Moving[] = [];
   private hints = true;
   private begunWith = "null";
-  private fitNext = true;
-  private fitted = false;
   private filling: ReturnType<typeof setTimeout> | undefined;
   private part = 0;
   private playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
-  private status = byId("status");
   private board: Board;
   private strip: Strip;
+  private size: SizeChip;
   private connection: Connection | null = null;
   private desk: Desk;
   private pace = new Pace();
   private voice = new Voice();
+  private said = new Said(byId("status"), byId<HTMLProgressElement>("progress"), this.voice);
   private guide = new Guide();
   private underlay = new Underlay(() => this.showUnderlay());
   private photograph = new PhotographPanel(
@@ -111,7 +119,6 @@ class Page {
       byId("board"),
       {
         drawn: (points, closed) => {
-          this.fitNext = true;
           this.pace.penUp();
           this.guide.done("draw");
           this.replace(drawnAnew(this.task, points, closed), { fresh: true });
@@ -145,22 +152,35 @@ class Page {
       chosen: () => this.chosen(),
       pinned: () => this.pinned,
       take: (task) => {
-        this.fitNext = true;
-        this.replace(taskOf({ ...task, version: 0 }), { fresh: true });
+        this.open(taskOf({ ...task, version: 0 }));
       },
       keep: (one) => this.keepShown(one),
+    });
+    this.size = new SizeChip(byId("board"), (by) => {
+      this.note();
+      if (this.underlay.placed) this.underlay.lengthsTimes(by);
+      this.board.look(rescaled(this.board.looking, by));
+      this.put(withLengthsTimes(this.task, by), {});
     });
     this.listen();
   }
 
+  /** Takes another problem, and brings its path into the middle. */
+  private open(task: Task) {
+    this.replace(task, { fresh: true });
+    this.board.fitPath(task);
+  }
+
   async begin() {
     const kept = remembered();
+    let view = kept?.view;
     if (kept) ({ task: this.task, pinned: this.pinned, hints: this.hints, begunWith: this.begunWith } = kept);
     try {
       const begunWith = await api.beginning();
       const given = JSON.parse(begunWith) as Task | null;
       if (given && this.begunWith !== begunWith) {
         if (kept) this.note();
+        view = undefined;
         this.task = taskOf({ ...given, version: 0 });
       }
       this.begunWith = begunWith;
@@ -169,7 +189,9 @@ class Page {
     }
     byId("hints").hidden = !this.hints;
     this.board.show(this.task, null, []);
-    this.board.fit();
+    if (view) this.board.look(view);
+    else if (this.task.points.length > 0) this.board.fitPath(this.task);
+    else this.board.open(this.task.unit);
     this.showUnderlay();
     this.connection = new Connection(
       (answer) => this.hear(answer),
@@ -192,11 +214,6 @@ class Page {
       requestAnimationFrame(frame);
     };
     requestAnimationFrame(frame);
-  }
-
-  /** A change that can be undone. */
-  private change(part: Partial<Task>, how: { fresh?: boolean } = {}) {
-    this.replace({ ...this.task, ...part }, how);
   }
 
   /** Another task in place of the one that stands, which can be undone. */
@@ -228,10 +245,9 @@ class Page {
 
   private async takeText(text: string, name: string) {
     const read = await taskOfText(text, name, this.task, input("samples").valueAsNumber || undefined);
-    if (typeof read === "string") return this.say(`These are no coordinates: ${read}`);
+    if (typeof read === "string") return this.said.refuse(`These are no coordinates: ${read}`);
     if (text === this.coordinates.value) this.written = text;
-    this.fitNext = true;
-    this.replace(read.task, { fresh: true });
+    this.open(read.task);
     return this.say(`Taken: ${read.said}.`);
   }
 
@@ -250,10 +266,6 @@ class Page {
       this.choice = null;
       this.answer = null;
       this.nine.hear(null);
-    }
-    if (how.fresh) {
-      this.fitted = false;
-      this.board.touched = false;
     }
     this.stays.show(null);
     // The controls and the strip can wait for a hand that moves; the board cannot.
@@ -292,7 +304,7 @@ class Page {
       document.body.dataset.doing = "refused";
       return;
     }
-    this.answer = answer;
+    this.answer = this.asRestored(answer);
     this.pace.answered(answer, this.version);
     this.nine.hear(answer);
     const choice = followed(this.choice, this.candidates());
@@ -302,13 +314,7 @@ class Page {
     document.body.dataset.doing = answer.doing;
     document.body.dataset.answered = String(answer.version);
     this.draw();
-    if (answer.candidates.length > 0 && this.fitNext) {
-      // Until the search has ended a better one may stand elsewhere; a view that was chosen by hand stays.
-      this.fitNext = answer.doing !== "done" && !this.board.touched;
-      if (!this.board.touched && (!this.fitted || !this.board.holdsAll)) this.board.fit();
-      this.fitted = this.fitNext;
-    }
-    const best = answer.candidates[0];
+    const best = this.answer.candidates[0];
     const unit = this.task.unit ? ` ${this.task.unit}` : "";
     const near =
       best && (best.ability || isExact(best))
@@ -317,7 +323,19 @@ class Page {
     const head = best ? `Best: ${near}, ${inWords(best)}. ` : "";
     this.desk.changed(answer.doing === "done");
     this.voice.answered(answer, head + answer.said);
-    this.tell(head + answer.said, answer.doing === "searching" ? answer.progress : undefined);
+    this.said.tell(head + answer.said, answer.doing === "searching" ? answer.progress : undefined);
+  }
+
+  /** An answer with the linkages that a step back has brought back, unless it has better ones. */
+  private asRestored(answer: Answer): Answer {
+    const before = this.restored;
+    if (!before || before.version !== this.version) return answer;
+    const [was, is] = [before.answer.candidates[0], answer.candidates[0]];
+    if (answer.doing === "done" && (!was || (is && is.rms < BETTER * was.rms))) {
+      this.restored = null;
+      return answer;
+    }
+    return { ...answer, candidates: before.answer.candidates };
   }
 
   /** The candidates that are shown: of many through nine points those that were chosen. */
@@ -403,37 +421,21 @@ class Page {
   }
 
   private keep() {
-    remember({ task: this.task, pinned: this.pinned, begunWith: this.begunWith, hints: this.hints });
+    const { task, pinned, begunWith, hints } = this;
+    remember({ task, pinned, begunWith, hints, view: this.board.looking });
   }
 
-  /** Says what was done or cannot be: seen until the next answer, and heard. */
   private say(text: string) {
-    this.voice.say(text);
-    this.tell(text);
-  }
-
-  private tell(text: string, progress?: number) {
-    if (this.status.textContent !== text) this.status.textContent = text;
-    const bar = byId<HTMLProgressElement>("progress");
-    bar.hidden = progress === undefined;
-    bar.value = progress ?? 0;
+    this.said.say(text);
   }
 
   /** Brings the controls to what the task says. */
   private fill() {
     const { task } = this;
-    const set = (id: string, value: number | undefined) => {
-      const field = input(id);
-      if (document.activeElement !== field) field.value = value === undefined ? "" : String(value);
-    };
     input("closed").checked = task.closed;
-    set("transmission", task.transmission_deg_min);
-    set("ratio", task.link_ratio_max);
-    const key = Object.keys(TYPES).find((name) => TYPES[name].join() === task.types.join());
-    byId<HTMLSelectElement>("type").value = key ?? "as-given";
-    byId("as-given").hidden = key !== undefined;
     for (const unit of document.querySelectorAll(".unit")) unit.textContent = task.unit ?? "";
     fillRequirements(task);
+    this.size.show(task);
     this.kept.show(task);
     this.table.show(task);
     const text = this.coordinates;
@@ -452,13 +454,15 @@ class Page {
     }
     click("undo", () => this.back("undo"));
     click("redo", () => this.back("redo"));
-    click("clear", () => this.replace(withPoints(this.task, [], this.task.closed), { fresh: true }));
+    click("clear", () => {
+      this.replace(withPoints(this.task, [], false), { fresh: true });
+      this.board.open(this.task.unit);
+    });
     const choice = byId<HTMLSelectElement>("example-choice");
     choice.replaceChildren(new Option("choose one", ""), ...EXAMPLES.map(([name], i) => new Option(name, String(i))));
     click("example", () => {
       if (choice.value === "") return this.desk.say("Choose first which example.");
-      this.fitNext = true;
-      return this.replace(EXAMPLES[Number(choice.value)][1], { fresh: true });
+      return this.open(EXAMPLES[Number(choice.value)][1]);
     });
     listenToRequirements(
       () => this.task,
@@ -500,18 +504,6 @@ class Page {
     input("closed").addEventListener("change", () =>
       this.replace(settled({ ...this.task, closed: input("closed").checked })),
     );
-    const number = (id: string, key: "tolerance" | "transmission_deg_min" | "link_ratio_max") => {
-      input(id).addEventListener("change", () => {
-        const { value, valueAsNumber } = input(id);
-        if (value === "" || Number.isFinite(valueAsNumber))
-          this.change({ [key]: value === "" ? undefined : valueAsNumber });
-      });
-    };
-    number("tolerance", "tolerance");
-    number("transmission", "transmission_deg_min");
-    number("ratio", "link_ratio_max");
-    const type = byId<HTMLSelectElement>("type");
-    type.addEventListener("change", () => this.change({ types: TYPES[type.value] ?? this.task.types }));
     click("take-coordinates", () => void this.takeText(this.coordinates.value, ""));
     document.addEventListener("keydown", (event) => {
       if (takesText(event.target) || !(event.ctrlKey || event.metaKey)) return;
@@ -526,8 +518,15 @@ class Page {
     byId("play").textContent = this.playing ? "Pause" : "Play";
   }
 
-  private now() {
-    return { task: this.task, photo: this.underlay.placed };
+  private now(): State {
+    const { task, answer, choice } = this;
+    const candidates = answer?.candidates ?? [];
+    const chosen =
+      choice &&
+      ("pin" in choice
+        ? { pin: this.pinned.indexOf(choice.pin) }
+        : { candidate: candidates.indexOf(choice.candidate) });
+    return { task, photo: this.underlay.placed, view: this.board.looking, answer, chosen };
   }
 
   /** Notes what stands before a change, so that it can be undone. */
@@ -541,9 +540,19 @@ class Page {
     if (then) this.restore(then);
   }
 
-  private restore(then: { task: Task; photo: Placed | null }) {
+  private restore(then: State) {
     if (then.photo) this.underlay.place(then.photo);
+    this.board.look(then.view);
     this.put(then.task, {});
+    const { answer, chosen } = then;
+    if (!answer || answer.candidates.length === 0) return;
+    this.answer = answer;
+    this.restored = { version: this.version, answer };
+    this.nine.hear(answer);
+    const candidate = chosen && "candidate" in chosen ? answer.candidates[chosen.candidate] : undefined;
+    const pin = chosen && "pin" in chosen ? this.pinned[chosen.pin] : undefined;
+    this.choice = candidate ? { candidate } : pin ? { pin } : null;
+    this.draw();
   }
 
   private async save(name: string, text: Promise<string>) {

@@ -1,6 +1,7 @@
 // What is remembered: steps to go back, and everything over a reload.
 
 import type { Solution, Task } from "./messages";
+import type { View } from "./view";
 
 const KEY = "linkwright-studio";
 const STEPS = 200;
@@ -10,6 +11,7 @@ export interface Remembered {
   pinned: Solution[];
   begunWith: string;
   hints: boolean;
+  view?: View;
 }
 
 /** What this tab has kept under a name; of a new tab what the latest has. */
@@ -36,7 +38,8 @@ export function keep(key: string, what: unknown) {
 export function remembered(): Remembered | null {
   const what = kept<Remembered>(KEY);
   if (!what || !Array.isArray(what.task?.points) || !Array.isArray(what.pinned)) return null;
-  return { ...what, pinned: what.pinned.filter((one) => one?.shown?.linkage && Array.isArray(one.task?.points)) };
+  const view = [what.view?.x, what.view?.y, what.view?.scale].every(Number.isFinite) ? what.view : undefined;
+  return { ...what, view, pinned: what.pinned.filter((one) => one?.shown?.linkage && Array.isArray(one.task?.points)) };
 }
 
 export const remember = (what: Remembered) => keep(KEY, what);

@@ -6,9 +6,11 @@ import {
   canBeExact,
   EXACT,
   isExact,
+  longestTimes,
   pivotsBelow,
   settled,
   spaceAround,
+  withLongest,
   withTiming,
   withTolerances,
   withWeights,
@@ -18,10 +20,27 @@ const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) 
 const input = (id: string) => byId<HTMLInputElement>(id);
 const select = (id: string) => byId<HTMLSelectElement>(id);
 
+/** From so many sizes of the path on the slider of the longest link stands for any. */
+const ANY_LONGEST = 10;
+
+const TYPES: Record<string, string[]> = {
+  any: [],
+  motor: ["crank-rocker", "double-crank"],
+  "crank-rocker": ["crank-rocker"],
+  "double-crank": ["double-crank"],
+  rocking: ["double-rocker", "triple-rocker", "rocker-crank"],
+};
+
 const SIDES = ["left", "bottom", "right", "top"];
 const BOXES = [
   { key: KINDS[0], box: "pivots", numbers: "box-numbers", prefix: "", around: pivotsBelow },
   { key: KINDS[1], box: "space", numbers: "space-numbers", prefix: "space-", around: spaceAround },
+] as const;
+/** Fields of one number, and what of the task they are. */
+const NUMBERS = [
+  ["tolerance", "tolerance"],
+  ["transmission", "transmission_deg_min"],
+  ["ratio", "link_ratio_max"],
 ] as const;
 /** Checked: required, which is the default. */
 const CHECKS = [
@@ -60,7 +79,25 @@ export function listenToRequirements(now: () => Task, change: (task: Task) => vo
   on("timing", () => settled(withTiming(now(), select("timing").value as "none")));
   on("each-tolerance", () => withTolerances(now(), input("each-tolerance").checked));
   on("each-weight", () => withWeights(now(), input("each-weight").checked));
+  for (const [id, key] of NUMBERS) {
+    on(id, () => {
+      const { value, valueAsNumber } = input(id);
+      if (value !== "" && !Number.isFinite(valueAsNumber)) return null;
+      return { ...now(), [key]: value === "" ? undefined : valueAsNumber };
+    });
+  }
+  on("type", () => ({ ...now(), types: TYPES[select("type").value] ?? now().types }));
+  const longest = input("longest");
+  const times = () => (longest.valueAsNumber >= ANY_LONGEST ? null : longest.valueAsNumber);
+  longest.addEventListener("input", () => tellLongest(times()));
+  on("longest", () => withLongest(now(), times()));
   on("exact", () => ({ ...now(), method: input("exact").checked ? EXACT : undefined }));
+}
+
+function tellLongest(times: number | null) {
+  const text = times === null ? "of any length" : `no longer than ${Number(times.toPrecision(3))} × the path`;
+  byId("longest-said").textContent = text;
+  input("longest").setAttribute("aria-valuetext", text);
 }
 
 /** Brings the controls to what the task says. */
@@ -82,7 +119,13 @@ export function fillRequirements(task: Task) {
   if (document.activeElement !== input("name")) input("name").value = task.name;
   select("objective").value = task.objective ?? "sum-of-squares";
   select("timing").value = task.timing?.offset ?? "none";
-  set("tolerance", task.tolerance);
+  for (const [id, key] of NUMBERS) set(id, task[key]);
+  const key = Object.keys(TYPES).find((name) => TYPES[name].join() === task.types.join());
+  select("type").value = key ?? "as-given";
+  byId("as-given").hidden = key !== undefined;
+  const longest = longestTimes(task);
+  set("longest", longest ?? ANY_LONGEST);
+  tellLongest(longest);
   input("tolerance").disabled = task.tolerances !== undefined;
   input("tolerance").placeholder = task.tolerances ? "in the table of points" : "any";
   input("each-tolerance").checked = task.tolerances !== undefined;

@@ -10,6 +10,7 @@ const KEYS: [string, (task: Task) => unknown][] = [
   ["require.type", (task) => task.types.length > 0],
   ["require.transmission_deg_min", (task) => task.transmission_deg_min],
   ["require.link_ratio_max", (task) => task.link_ratio_max],
+  ["require.longest_max", (task) => task.kept?.["require.longest_max"]],
   ["require.pivots_in", (task) => task.pivots_in],
   ["require.footprint_in", (task) => task.footprint_in],
   ["require.direction", (task) => task.direction && task.direction !== "any"],

@@ -4,6 +4,8 @@ import { element, figure, setAll, shape } from "../../src/report/html/player/svg
 import { Figure, type Moving } from "./figures";
 import { changing, setChildren } from "./focus";
 import type { Point, Shown, Task } from "./messages";
+import { longestMax, sizeOf } from "./task";
+import { type Graded, limitedBy, marks, nearnessInWords, SIGNS, sizeInWords, transmissionInWords } from "./words";
 
 const [W, H] = [150, 96];
 /** Of more than so many only the pictures in sight are drawn. */
@@ -28,7 +30,9 @@ const word = (key: string) =>
   WORDS[key] ?? key.replace(/^design\.(A|B)(x|y)$/, "place of $1").replace(/^design\./, "bounds of ");
 
 export const inWords = (shown: Shown) =>
-  shown.accepted ? "meets everything" : `not met: ${[...new Set(shown.unmet.map(word))].join(", ") || "a defect"}`;
+  shown.accepted
+    ? "meets everything that was asked"
+    : `not met: ${[...new Set(shown.unmet.map(word))].join(", ") || "a defect"}`;
 
 /** Whether what it misses by is rounding: an error of 1e-14 tells nobody anything. */
 export function isExact({ ability, max, linkage: { a, b, c, d, e } }: Shown): boolean {
@@ -55,11 +59,15 @@ class Card {
   private svg = shape("svg", { class: "stage", viewBox: `0 0 ${W} ${H}`, width: W, height: H, "aria-hidden": "true" });
   private target = shape("path", { class: "target-line" });
   private title = element("strong");
+  private marks = element("span", { class: "tags" });
+  private quality = element("span", { class: "quality" });
   private figures = element("span", { class: "figures" });
   private verdict = element("span", { class: "verdict" });
   readonly pick = element("button", { type: "button", class: "pick" }, [
     this.svg,
     this.title,
+    this.marks,
+    this.quality,
     this.figures,
     this.verdict,
   ]);
@@ -72,20 +80,42 @@ class Card {
     this.pin.addEventListener("click", onPin);
   }
 
-  show(moving: Moving, name: string, task: Task, chosen: boolean, pinned: boolean, part: number, all: boolean) {
+  show(
+    moving: Moving,
+    { name, marks }: { name: string; marks: string[] },
+    task: Task,
+    chosen: boolean,
+    pinned: boolean,
+    part: number,
+    all: boolean,
+  ) {
     const { shown } = moving;
     Object.assign(this, { moving, task });
     if (this.seen || all) this.draw(part);
     const { unit } = task;
-    const texts = [
-      name,
-      `${nearness(shown, unit)}; ${shown.type}, ${shown.transmission_deg < 0.05 ? 0 : figure(shown.transmission_deg, 3)}°`,
-      inWords(shown),
+    const texts = [name, `${nearness(shown, unit)}; ${shown.type}`, inWords(shown)];
+    const size = sizeOf(task.points);
+    const limits = {
+      longest: longestMax(task),
+      transmission: task.transmission_deg_min,
+      ratio: task.link_ratio_max ?? 20,
+    };
+    const limited = limitedBy(shown, limits);
+    const exact = shown.ability !== undefined || isExact(shown);
+    const graded: Graded[] = [
+      ...(exact ? [] : [nearnessInWords(shown, size)]),
+      transmissionInWords(shown.transmission_deg),
     ];
-    const key = JSON.stringify([texts, shown.accepted, chosen, pinned]);
+    const plain = [sizeInWords(shown.linkage, size), ...(limited ? [limited] : [])];
+    const key = JSON.stringify([texts, graded, plain, marks, shown.accepted, chosen, pinned]);
     if (key === this.key) return;
     this.key = key;
     [this.title.textContent, this.figures.textContent, this.verdict.textContent] = texts;
+    this.marks.replaceChildren(...marks.map((mark) => element("span", {}, [mark])));
+    this.quality.replaceChildren(
+      ...graded.map(({ grade, text }) => element("span", { class: grade }, [`${SIGNS[grade]} ${text}`])),
+      ...plain.map((text) => element("span", {}, [text])),
+    );
     this.verdict.classList.toggle("good", shown.accepted);
     setAll(this.pick, { "aria-pressed": String(chosen) });
     this.pin.textContent = pinned ? "Unpin" : "Pin";
@@ -169,9 +199,25 @@ export class Strip {
     const before = this.shown;
     this.found = found;
     this.shown = all.map((_, i) => (i < found ? this.card(0, i) : this.card(1, i - found)));
+    const extent = (moving: Moving) => {
+      const [left, low, right, high] = moving.box();
+      return Math.hypot(right - left, high - low);
+    };
+    const candidates = all.slice(0, found);
+    // Of many through nine points no curve is traced that is not looked at.
+    const marked =
+      found > MANY ? [] : marks(candidates.map((moving) => ({ shown: moving.shown, extent: extent(moving) })));
     all.forEach((moving, i) => {
       const name = i < found ? `Linkage ${i + 1}` : `Pinned ${i - found + 1}`;
-      this.shown[i].show(moving, name, tasks[i], i === chosen, i >= found, this.part, all.length <= MANY);
+      this.shown[i].show(
+        moving,
+        { name, marks: marked[i] ?? [] },
+        tasks[i],
+        i === chosen,
+        i >= found,
+        this.part,
+        all.length <= MANY,
+      );
     });
     if (this.shown.length !== before.length || this.shown.some((card, i) => card !== before[i])) {
       const heading = this.list.parentElement?.querySelector("h2") ?? this.list;

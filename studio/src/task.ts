@@ -34,8 +34,60 @@ export function settled(task: Task): Task {
 /** A task with other points in place of all its points. */
 export const withPoints = (task: Task, points: Point[], closed: boolean): Task => settled({ ...task, points, closed });
 
+/** The key of the limit on the longest link, and its usual value in sizes of the path. */
+const LONGEST = "require.longest_max";
+const USUAL_LONGEST = 3;
+
+/** The length that no link may exceed: what is asked, or what a problem file has by itself; null: any. */
+export function longestMax(task: Task): number | null {
+  const given = task.kept?.[LONGEST];
+  if (given !== undefined) return Number.isFinite(Number(given)) ? Number(given) : null;
+  const others = Object.keys(task.kept ?? {}).some((key) => key.startsWith("design.") || key === "require.extent_max");
+  return task.timing || others ? null : USUAL_LONGEST * sizeOf(task.points);
+}
+
+/** The limit in sizes of the path; null: any. */
+export function longestTimes(task: Task): number | null {
+  const longest = longestMax(task);
+  return longest === null ? null : longest / sizeOf(task.points);
+}
+
+/** No link longer than so many sizes of the path; null: any. */
+export function withLongest(task: Task, times: number | null): Task {
+  const { [LONGEST]: _, ...kept } = task.kept ?? {};
+  const free = { ...task, kept: Object.keys(kept).length > 0 ? kept : undefined };
+  if (longestTimes(free) === times) return free;
+  const value = times === null ? '"any"' : String(Number((times * sizeOf(task.points)).toPrecision(6)));
+  return { ...task, kept: { ...kept, [LONGEST]: value } };
+}
+
+/** What a problem file says beyond the controls of the page. */
+export const withoutControls = (kept: Record<string, string> | undefined): [string, string][] =>
+  Object.entries(kept ?? {}).filter(([key]) => key !== LONGEST);
+
+/** The same problem with all lengths so many times as long. */
+export function withLengthsTimes(task: Task, by: number): Task {
+  const length = (value: number) => Number((value * by).toPrecision(12));
+  const box = (one: Box | undefined) => one?.map(length) as Box | undefined;
+  const longest = Number(task.kept?.[LONGEST]);
+  return settled({
+    ...task,
+    points: task.points.map((p) => p.map(length) as Point),
+    tolerance: task.tolerance === undefined ? undefined : length(task.tolerance),
+    tolerances: task.tolerances?.map(length),
+    pivots_in: box(task.pivots_in),
+    footprint_in: box(task.footprint_in),
+    kept: Number.isFinite(longest) ? { ...task.kept, [LONGEST]: String(length(longest)) } : task.kept,
+  });
+}
+
 /** What is asked of the linkage, of a path that is drawn anew: what belonged to the points of another is gone. */
-export const drawnAnew = (task: Task, points: Point[], closed: boolean): Task => ({
+export function drawnAnew(task: Task, points: Point[], closed: boolean): Task {
+  const fresh = drawnAlone(task, points, closed);
+  return task.points.length > 2 && task.kept?.[LONGEST] ? withLongest(fresh, longestTimes(task)) : fresh;
+}
+
+const drawnAlone = (task: Task, points: Point[], closed: boolean): Task => ({
   ...task,
   points,
   closed,

@@ -100,6 +100,11 @@ export class Underlay {
     else this.changed();
   }
 
+  /** Makes all lengths so many times as long. */
+  lengthsTimes(by: number) {
+    if (this.photo) this.place({ scale: this.photo.scale * by, x: this.photo.x * by, y: this.photo.y * by });
+  }
+
   remove() {
     this.photo = null;
     this.ends = [];

@@ -183,12 +183,16 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     lap(&mut advice_s.costs);
     let mut beside = answers::beside(inputs, &mut outcome);
     lap(&mut advice_s.buildable);
+    outcome.evaluations += picked.evaluations;
     for candidate in outcome.candidates.iter_mut().chain(&mut beside.buildable) {
         candidate.error.to_raw = to_raw(&problem, candidate);
     }
     outcome.reason = reached(&problem, &outcome);
-    let picks = picked.picks.map(|picks| settled(&outcome.candidates, picks));
+    let mut picks = picked.picks.map(|picks| settled(&outcome.candidates, picks));
     let front = job.front.as_ref().map(|request| fronted(inputs, request, &mut outcome, &picked.met));
+    if let (Some(picks), Some(front), Some(closest)) = (&mut picks, &front, outcome.candidates.first()) {
+        picks::take_better(&problem, closest, picks, front);
+    }
     lap(&mut advice_s.front);
     let beside_s = start.elapsed().as_secs_f64() - search_s;
     let asked = job.clone().try_into()?;
