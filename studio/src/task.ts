@@ -38,12 +38,17 @@ export const withPoints = (task: Task, points: Point[], closed: boolean): Task =
 const LONGEST = "require.longest_max";
 const USUAL_LONGEST = 3;
 
+const EXTENT = "require.extent_max";
+/** Keys of a problem file that bound a length, and those that bound a place. */
+const BOUND_LENGTHS = ["a", "b", "c", "d", "e", "ground", "coupler_x", "coupler_y"].map((key) => `design.${key}`);
+const BOUND_PLACES = ["design.A", "design.B"];
+
 /** The length that no link may exceed: what is asked, or what a problem file has by itself; null: any. */
 export function longestMax(task: Task): number | null {
   const given = task.kept?.[LONGEST];
   if (given !== undefined) return Number.isFinite(Number(given)) ? Number(given) : null;
-  const others = Object.keys(task.kept ?? {}).some((key) => key.startsWith("design.") || key === "require.extent_max");
-  return task.timing || others ? null : USUAL_LONGEST * sizeOf(task.points);
+  const isBounded = [EXTENT, ...BOUND_LENGTHS].some((key) => task.kept?.[key] !== undefined);
+  return task.timing || isBounded ? null : USUAL_LONGEST * sizeOf(task.points);
 }
 
 /** The limit in sizes of the path; null: any. */
@@ -69,7 +74,9 @@ export const withoutControls = (kept: Record<string, string> | undefined): [stri
 export function withLengthsTimes(task: Task, by: number): Task {
   const length = (value: number) => Number((value * by).toPrecision(12));
   const box = (one: Box | undefined) => one?.map(length) as Box | undefined;
-  const longest = Number(task.kept?.[LONGEST]);
+  const isLength = (key: string) => [LONGEST, EXTENT, ...BOUND_LENGTHS, ...BOUND_PLACES].includes(key);
+  const all = (text: string) => text.replace(/[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?/gi, (n) => String(length(Number(n))));
+  const kept = Object.entries(task.kept ?? {}).map(([key, text]) => [key, isLength(key) ? all(text) : text]);
   return settled({
     ...task,
     points: task.points.map((p) => p.map(length) as Point),
@@ -77,7 +84,7 @@ export function withLengthsTimes(task: Task, by: number): Task {
     tolerances: task.tolerances?.map(length),
     pivots_in: box(task.pivots_in),
     footprint_in: box(task.footprint_in),
-    kept: Number.isFinite(longest) ? { ...task.kept, [LONGEST]: String(length(longest)) } : task.kept,
+    kept: task.kept && Object.fromEntries(kept),
   });
 }
 
