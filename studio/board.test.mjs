@@ -5,7 +5,7 @@ import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { doing, endAll, browser as launched, opened, shots, status, studio } from "./harness.mjs";
+import { doing, endAll, browser as launched, opened, shots, status, studio, tab } from "./harness.mjs";
 
 let browser;
 const work = mkdtempSync(join(tmpdir(), "linkwright-board-"));
@@ -46,7 +46,7 @@ const egg = (t) => [0.9 * Math.cos(t) + 0.1 * Math.cos(2 * t), 0.5 * Math.sin(t)
 const near = (one, other, part) => Math.abs(one - other) <= part * other;
 
 test("the same stroke has the same size, whatever was answered; steps back bring back what stood there", async () => {
-  const { address, end } = await studio("--port", "18501");
+  const { address, end } = await studio("--port", "0");
   const { page, said, context } = await opened(browser, address);
   await button(page, "Clear").click();
   const first = await scale(page);
@@ -94,7 +94,7 @@ test("the same stroke has the same size, whatever was answered; steps back bring
 });
 
 test("the size is a number on the board; the longest link is a wish; a refusal can be read", async () => {
-  const { address, end } = await studio("--port", "18502");
+  const { address, end } = await studio("--port", "0");
   const { page, said, context } = await opened(browser, address);
   await button(page, "Clear").click();
   assert.ok(!(await page.locator("#closed").isChecked()), "no path is closed before it is drawn");
@@ -125,9 +125,11 @@ test("the size is a number on the board; the longest link is a wish; a refusal c
   assert.match(await page.locator("#longest-said").textContent(), /any/);
 
   // A text that is refused while the search answers: the refusal stays.
-  await page.locator("#points-panel summary").click();
+  await tab(page, "points");
   await page.locator("#coordinates").fill("1, 2\nthree, 4");
+  await tab(page, "wishes");
   await page.locator("#longest").fill("4");
+  await tab(page, "points");
   await page.locator("#take-coordinates").click();
   await page.waitForFunction(() => document.querySelector("#status").textContent.startsWith("These are no"));
   await page.waitForTimeout(3500);
@@ -139,7 +141,7 @@ test("the size is a number on the board; the longest link is a wish; a refusal c
 });
 
 test("a card, the status and the whole path are in sight at every size, and the page has no scroll bar", async () => {
-  const { address, end } = await studio("--port", "18503");
+  const { address, end } = await studio("--port", "0");
   const { page, said, context } = await opened(browser, address);
   for (const [wide, high] of [
     [1280, 900],

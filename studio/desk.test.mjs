@@ -7,7 +7,16 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { deflateRawSync } from "node:zlib";
-import { studio as begun, doing, endAll, browser as launched, opened as openedIn, program, shots } from "./harness.mjs";
+import {
+  studio as begun,
+  doing,
+  endAll,
+  browser as launched,
+  opened as openedIn,
+  program,
+  shots,
+  tab,
+} from "./harness.mjs";
 
 const work = mkdtempSync(join(tmpdir(), "desk-"));
 let browser;
@@ -126,8 +135,9 @@ test("saved searches: begun, watched, stopped, gone on, opened, compared; a relo
   await state(page, "short one", "done");
   assert.match(await page.locator("#jobs li").textContent(), /rms 0\.\d+ mm/);
   // The record is that of synth.
+  await tab(page, "build");
   const problem = await saved(page, () => page.getByRole("button", { name: "Problem file", exact: true }).click());
-  assert.ok(problem.text.includes("walking-step"));
+  assert.ok(problem.text.includes("walking-leg"));
   execFileSync(program, [
     "synth",
     problem.file,
@@ -144,6 +154,7 @@ test("saved searches: begun, watched, stopped, gone on, opened, compared; a relo
     readFileSync(join(work, "own/record.json"), "utf8"),
   );
   // A tolerance that nothing meets: it goes on and on.
+  await tab(page, "wishes");
   await page.locator("#tolerance").fill("0.0001");
   await page.keyboard.press("Tab");
   await page.locator("#job-name").fill("long one");
@@ -212,12 +223,14 @@ test("a link holds the problem, and what is wrong with one is said", async () =>
   const { page, said, context } = await opened(address);
   await page.locator("#transmission").fill("41");
   await page.keyboard.press("Tab");
+  await tab(page, "build");
   await page.locator("#copy-link").click();
   await page.waitForFunction(() => document.querySelector("#link").value !== "");
   const link = await page.locator("#link").inputValue();
   assert.ok(link.startsWith("http://127.0.0.1:18593/#problem=") && link.length < 2000, link);
   const points = await page.locator("#coordinates").inputValue();
   await page.locator("#clear").click();
+  await tab(page, "wishes");
   await page.locator("#transmission").fill("");
   await page.keyboard.press("Tab");
   // Nothing of it reaches the server: only the page asks, and for no address that holds it.
@@ -230,6 +243,7 @@ test("a link holds the problem, and what is wrong with one is said", async () =>
   assert.ok(asked.length > 3 && asked.every((url) => !url.includes("problem=") || url.includes("#problem=")));
   await done(other);
   // Pasted.
+  await tab(page, "build");
   await page.locator("#link").fill(link);
   await page.locator("#take-link").click();
   await page.waitForFunction((points) => document.querySelector("#coordinates").value === points, points);

@@ -5,7 +5,18 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { doing, endAll, browser as launched, opened, problemText, shots, status, studio } from "./harness.mjs";
+import {
+  doing,
+  endAll,
+  example,
+  browser as launched,
+  opened,
+  problemText,
+  shots,
+  status,
+  studio,
+  tab,
+} from "./harness.mjs";
 
 const work = mkdtempSync(join(tmpdir(), "studio-hand-"));
 const problems = new URL("../problems/", import.meta.url).pathname;
@@ -223,6 +234,7 @@ test("a new stroke begins a new path: what belonged to the old points goes, what
     /Still asked as before: driven by, longest over shortest link\./,
   );
   await button(page, "Ask nothing but the path").click();
+  await tab(page, "wishes");
   await page.locator("#transmission").fill("25");
   await page.keyboard.press("Tab");
   await page.locator("#pivots").check();
@@ -242,7 +254,7 @@ test("a new stroke begins a new path: what belonged to the old points goes, what
 
 test("a click on the path puts a point between, one beside it behind the last; each is one step back", async () => {
   const { page, said, context, end } = await begun();
-  await page.locator("#points-panel summary").click();
+  await tab(page, "points");
   await page.locator("#coordinates").fill("-40, 0\n40, 0\n40, 40\n");
   await button(page, "Take these points").click();
   await page.locator("#closed").uncheck();
@@ -270,9 +282,9 @@ test("a click on the path puts a point between, one beside it behind the last; e
   await end();
 });
 
-test("Ctrl+Z undoes from every control that is no text; texts that were typed are not lost; examples load by their button", async () => {
+test("Ctrl+Z undoes from every control that is no text; texts that were typed are not lost; examples load by a click", async () => {
   const { page, said, context, end } = await begun();
-  await page.locator("#points-panel summary").click();
+  await tab(page, "points");
   await page.locator("#coordinates").fill("1, 2\n3, 4\n");
   await page.locator("#closed").uncheck();
   await page.keyboard.press("Control+z");
@@ -291,13 +303,10 @@ test("Ctrl+Z undoes from every control that is no text; texts that were typed ar
   await page.locator("#coordinates").fill("1\t2\n3\t4\n5\t1\n");
   await button(page, "Take these points").click();
   assert.equal(await texts(page), "1, 2\n3, 4\n5, 1");
-  // An example is not loaded by looking at its name.
-  await page.locator("#example-choice").selectOption("2");
+  // An example is not loaded by looking at it.
+  await button(page, "Examples").click();
   assert.equal(await page.locator("#point-count").textContent(), "3");
-  await page.locator("#example").click();
-  assert.equal(await page.locator("#point-count").textContent(), "9");
-  await page.locator("#example-choice").selectOption("");
-  await page.locator("#example").click();
+  await example(page, 5);
   assert.equal(await page.locator("#point-count").textContent(), "9");
   assert.deepEqual(said, []);
   await context.close();
@@ -314,7 +323,7 @@ test("the focus stays where work is done", async () => {
   await page.getByRole("button", { name: "Got it" }).focus();
   await page.keyboard.press("Enter");
   assert.match(await focus(), /^The target/);
-  await page.locator("#points-panel summary").click();
+  await tab(page, "points");
   await button(page, "Remove point 4").focus();
   await page.keyboard.press("Enter");
   assert.equal(await focus(), "Remove point 4");
@@ -346,8 +355,7 @@ test("each tab keeps its own drawing; another problem from the command line is a
   await other.goto(new URL("/", first.address).href);
   await other.waitForSelector("#strip li");
   assert.equal(await texts(other), mine, "a new tab begins with the latest");
-  await other.locator("#example-choice").selectOption("1");
-  await other.locator("#example").click();
+  await example(other, 1);
   await other.waitForFunction(() => document.querySelector("#point-count").textContent === "9");
   await page.reload();
   await page.waitForSelector("#strip li");

@@ -94,11 +94,23 @@ export const doing = (page, what) =>
     { timeout: 90_000 },
   );
 
+/** Opens a tab beside the board. */
+export const tab = (page, name) => page.locator(`#tab-${name}`).click();
+
+/** Loads an example of the gallery by its number. */
+export async function example(page, number) {
+  if (await page.locator("#gallery").isHidden()) await button(page, "Examples").click();
+  await page.locator("#gallery .example").nth(number).click();
+}
+
 /** The problem file that the page saves. */
 export async function problemText(page) {
+  await tab(page, "build");
   const [download] = await Promise.all([
     page.waitForEvent("download"),
     page.getByRole("button", { name: "Problem file" }).click(),
   ]);
   return readFileSync(await download.path(), "utf8");
 }
+
+export const button = (page, name) => page.getByRole("button", { name, exact: true });

@@ -6,7 +6,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { doing, endAll, browser as launched, opened, shots, status, studio } from "./harness.mjs";
+import { doing, endAll, example, browser as launched, opened, shots, status, studio, tab } from "./harness.mjs";
 
 const work = mkdtempSync(join(tmpdir(), "studio-pins-"));
 const problems = new URL("../problems/", import.meta.url).pathname;
@@ -40,10 +40,12 @@ async function saved(page, act) {
 }
 
 /** The numbers of the linkage that the page saves, to what a search changes of one that it has found again. */
-const linkage = async (page) =>
-  (await saved(page, () => button(page, "Linkage file").click())).text
-    .match(/(?<= |\[)-?\d+\.\d+(e-?\d+)?/g)
-    .map((number) => Number(number).toFixed(2).replace("-0.00", "0.00"));
+const linkage = async (page) => {
+  await tab(page, "build");
+  const { text } = await saved(page, () => button(page, "Linkage file").click());
+  const numbers = text.match(/(?<= |\[)-?\d+\.\d+(e-?\d+)?/g);
+  return numbers.map((number) => Number(number).toFixed(2).replace("-0.00", "0.00"));
+};
 
 test("what is chosen stays chosen while candidates come, go and change places", async () => {
   const { page, said: console_, context, end } = await begun();
@@ -61,6 +63,7 @@ test("what is chosen stays chosen while candidates come, go and change places", 
   await page.reload();
   await doing(page, "done");
   const again = async (ratio) => {
+    await tab(page, "wishes");
     await page.locator("#ratio").fill(String(ratio));
     await page.keyboard.press("Tab");
     await doing(page, "done");
@@ -72,6 +75,7 @@ test("what is chosen stays chosen while candidates come, go and change places", 
   // So does the control that has the focus, though cards come before it.
   const focused = () => page.evaluate(() => document.activeElement.getAttribute("aria-label"));
   most = 9;
+  await tab(page, "wishes");
   await page.locator("#ratio").fill("19");
   await button(page, "Unpin pinned 1").focus();
   await doing(page, "done");
@@ -101,11 +105,11 @@ test("what is chosen stays chosen while candidates come, go and change places", 
 test("pins keep their target: shown, compared, saved beside another; none is dropped unasked", async () => {
   const { page, said: console_, context, end } = await begun();
   await doing(page, "done");
+  await tab(page, "points");
   await page.locator("#unit").selectOption("cm");
   await doing(page, "done");
   for (const rank of [1, 2]) await button(page, `Pin linkage ${rank}`).click();
-  await page.locator("#example-choice").selectOption("1");
-  await page.locator("#example").click();
+  await example(page, 6);
   await doing(page, "done");
   await button(page, "Pin linkage 1").click();
   await button(page, "Pin linkage 2").click();
@@ -117,14 +121,15 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   await card.click();
   await page.locator("#details summary").click();
   await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-step, as it stands",
+    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
   );
   await page.waitForSelector(".details-charts figure");
   await page.locator("#format").selectOption("toml");
   const file = await saved(page, () => page.locator("#export").click());
-  assert.equal(file.name, "walking-step.toml");
+  assert.equal(file.name, "walking-leg.toml");
+  await tab(page, "build");
   const own = await saved(page, () => button(page, "Linkage file").click());
-  assert.equal(own.name, "walking-step-pinned-2.toml");
+  assert.equal(own.name, "walking-leg-pinned-2.toml");
   // Compared with each other and with the one on the board, by the names that they have here.
   await page.locator(".pick", { hasText: "Linkage 2" }).click();
   await button(page, "Compare").click();
@@ -138,12 +143,12 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   // A pin's target is drawn again, and that is one step.
   await card.click();
   await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-step, as it stands",
+    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
   );
   await button(page, "Draw its target").click();
   assert.equal(await page.locator("#point-count").textContent(), "19");
   await button(page, "Undo").click();
-  assert.equal(await page.locator("#point-count").textContent(), "9");
+  assert.equal(await page.locator("#point-count").textContent(), "12");
   // They are remembered with their targets.
   await page.reload();
   await doing(page, "done");
@@ -158,7 +163,7 @@ test("the details say whether they are of what stands, and what they save is wha
   await doing(page, "done");
   await page.locator("#details summary").click();
   await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-step, as it stands",
+    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
   );
   await page.locator("#format").selectOption("json");
   const save = async () => JSON.parse((await saved(page, () => page.locator("#export").click())).text);
@@ -171,9 +176,7 @@ test("the details say whether they are of what stands, and what they save is wha
   await page.mouse.move(x, y);
   await page.mouse.down();
   for (let i = 1; i <= 10; i += 1) await page.mouse.move(x, y - i);
-  await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-step, as it stood",
-  );
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-leg, as it stood");
   assert.deepEqual(
     await page.evaluate(async () => {
       const asked = [];
@@ -194,7 +197,7 @@ test("the details say whether they are of what stands, and what they save is wha
   await page.mouse.up();
   await doing(page, "done");
   await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-step, as it stands",
+    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
   );
   assert.notDeepEqual(await save(), before);
   assert.deepEqual(console_, []);
@@ -210,8 +213,7 @@ test("a long search is of what is drawn, under its name, with the budget of the 
     "request",
     (request) => request.url().endsWith("/jobs") && request.method() === "POST" && asked.push(request.postDataJSON()),
   );
-  await page.locator("#example-choice").selectOption("1");
-  await page.locator("#example").click();
+  await example(page, 1);
   await doing(page, "done");
   assert.equal(await page.locator("#job-name").getAttribute("placeholder"), "straight-stroke");
   assert.equal(await page.locator("#job-name").inputValue(), "");
@@ -254,7 +256,7 @@ test("a tab that is not served is told why; a beginning that did not come is ask
   });
   await page.reload();
   await page.waitForSelector("#strip li");
-  assert.equal(await page.locator("#name").inputValue(), "walking-step");
+  assert.equal(await page.locator("#name").inputValue(), "walking-leg");
   await page.reload();
   await page.waitForSelector("#strip li");
   assert.equal(await page.locator("#left").inputValue(), "-20");

@@ -6,7 +6,17 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { doing, endAll, browser as launched, opened as openedIn, program, shots, status, studio } from "./harness.mjs";
+import {
+  doing,
+  endAll,
+  browser as launched,
+  opened as openedIn,
+  program,
+  shots,
+  status,
+  studio,
+  tab,
+} from "./harness.mjs";
 
 const work = mkdtempSync(join(tmpdir(), "studio-"));
 let browser;
@@ -112,6 +122,7 @@ test("draw, drag, pin, save, reload, restart", async () => {
     await download.saveAs(file);
     return file;
   };
+  await tab(page, "build");
   const [problem, linkage] = [await save("Problem file"), await save("Linkage file")];
   execFileSync(program, ["check", problem, linkage]);
   execFileSync(program, ["synth", problem, "--out", join(work, "out"), "--quiet"]);
@@ -142,8 +153,8 @@ test("draw, drag, pin, save, reload, restart", async () => {
 test("by keyboard alone: points typed, requirements set, a point moved, a linkage chosen", async () => {
   const { address, end } = await studio("--port", "18473");
   const { page, said, context } = await opened(address);
-  await page.locator("summary", { hasText: "Points (" }).focus();
-  await page.keyboard.press("Enter");
+  await page.locator("#tab-wishes").focus();
+  await page.keyboard.press("ArrowRight");
   await page.locator("#coordinates").focus();
   await page.keyboard.press("Control+a");
   await page.keyboard.type("x,y\n0, 0\n10, 4\n20, 5\n30, 4\n40, 0\n");
@@ -162,6 +173,7 @@ test("by keyboard alone: points typed, requirements set, a point moved, a linkag
   await page.keyboard.press("Enter");
   assert.equal(await page.locator("#strip .pick").nth(1).getAttribute("aria-pressed"), "true");
   // What is impossible is said, and what would help.
+  await tab(page, "wishes");
   await page.locator("#transmission").fill("89");
   await page.keyboard.press("Tab");
   await doing(page, "done");
@@ -169,6 +181,7 @@ test("by keyboard alone: points typed, requirements set, a point moved, a linkag
   await page.locator("#tolerance").fill("-1");
   await page.keyboard.press("Tab");
   await page.waitForFunction(() => document.querySelector("#status").textContent.startsWith("This cannot be searched"));
+  await tab(page, "points");
   await page.locator("#coordinates").fill("1, 2\nthree");
   await page.getByRole("button", { name: "Take these points" }).click();
   assert.match(await status(page), /line 2/);

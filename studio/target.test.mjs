@@ -6,7 +6,19 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "nod
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { doing, endAll, browser as launched, opened, problemText, program, shots, status, studio } from "./harness.mjs";
+import {
+  doing,
+  endAll,
+  example,
+  browser as launched,
+  opened,
+  problemText,
+  program,
+  shots,
+  status,
+  studio,
+  tab,
+} from "./harness.mjs";
 
 const work = mkdtempSync(join(tmpdir(), "studio-target-"));
 const problems = new URL("../problems/", import.meta.url).pathname;
@@ -58,24 +70,29 @@ const count = (page, n) =>
 test("a table of points with crank angle, tolerance and weight; all of it can be undone", async () => {
   const { address, end } = await studio("--port", "18481");
   const { page, said, context } = await opened(browser, address);
-  await open(page, "points-panel");
+  await tab(page, "points");
   await page.locator("#coordinates").fill("0, 0\n10, 4\n20, 5\n30, 4\n40, 0\n");
   await page.getByRole("button", { name: "Take these points" }).click();
   await count(page, 5);
   await page.locator("#closed").uncheck();
+  await tab(page, "wishes");
   await page.locator("#type").selectOption("any");
   const before = await problemText(page);
+  await tab(page, "points");
   await typed(page, cell(page, "Point 1, y"), "4.5");
   await page.locator("#timing").selectOption("ground");
   await typed(page, cell(page, "Point 2, crank angle in degrees"), "100");
+  await tab(page, "wishes");
   await typed(page, "#tolerance", "0.8");
   await page.locator("#each-tolerance").check();
+  await tab(page, "points");
   await typed(page, cell(page, "Point 0, largest error"), "0.25");
   await page.locator("#each-weight").check();
   await typed(page, cell(page, "Point 4, weight"), "3");
   await page.getByRole("button", { name: "Add a point" }).click();
   assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "Point 5, x");
   await page.getByRole("button", { name: "Remove point 3" }).click();
+  await tab(page, "wishes");
   await open(page, "more-requirements");
   await page.locator("#branch").uncheck();
   await page.locator("#over").selectOption("used");
@@ -99,6 +116,7 @@ test("a table of points with crank angle, tolerance and weight; all of it can be
   await doing(page, "done");
   await shot(page, "table");
   // A weight of nothing is refused where it is typed.
+  await tab(page, "points");
   await typed(page, cell(page, "Point 4, weight"), "0");
   assert.match(await status(page), /^Point 4: the weight must be above 0/);
   assert.equal(await cell(page, "Point 4, weight").inputValue(), "1");
@@ -156,7 +174,7 @@ test("points files, drawings and problems are dropped, pasted, opened; what is w
     document.body.dispatchEvent(new ClipboardEvent("paste", { bubbles: true, clipboardData: data }));
   });
   await count(page, 3);
-  await open(page, "points-panel");
+  await tab(page, "points");
   await page.locator("#file").setInputFiles(join(problems, "literature/k18.toml"));
   await count(page, 18);
   assert.match(await problemText(page), /name = "k18"[\s\S]*crank_deg = /);
@@ -275,6 +293,7 @@ test("a photograph lies beneath, gets its scale by two clicks and a length, and 
   await page.mouse.move(board.x + 340, board.y + 200, { steps: 3 });
   await page.mouse.up();
   assert.ok((await x()) > left);
+  await tab(page, "points");
   await page.getByRole("button", { name: "Set its scale" }).click();
   await page.mouse.click(board.x + 200, board.y + 200);
   await page.mouse.click(board.x + 500, board.y + 200);
@@ -308,6 +327,7 @@ test("a photograph lies beneath, gets its scale by two clicks and a length, and 
   await page.reload();
   await page.waitForSelector(".underlay image[href^='data:image/']");
   assert.equal(Number(await page.locator("#photo-width").inputValue()), now);
+  await tab(page, "points");
   await open(page, "photo-panel");
   await page.locator("#photo-remove").click();
   assert.ok(await page.locator("#photo-placing").isHidden());
@@ -403,12 +423,13 @@ test("nine points: every real linkage, counted, and they follow a point", async 
 test("what stands in the way is said, and a change that helps is one click", async () => {
   const { address, end } = await studio("--port", "18486");
   const { page, said, context } = await opened(browser, address);
-  await open(page, "points-panel");
+  await tab(page, "points");
   await page.locator("#coordinates").fill("0, 0\n10, 4\n20, 5\n30, 4\n40, 0\n");
   await page.getByRole("button", { name: "Take these points" }).click();
   await page.locator("#closed").uncheck();
   await doing(page, "done");
   assert.match(await status(page), /^Best: .* meets everything[\s\S]*(S|s)ure/);
+  await tab(page, "wishes");
   await typed(page, "#tolerance", "0.01");
   await typed(page, "#transmission", "89");
   await doing(page, "done");
@@ -445,11 +466,14 @@ test("the main job by keys alone, and by what a screen reader is told", async ()
     }
     assert.fail(`${name} is not reached`);
   };
-  await reach("Which example");
   await doing(page, "done");
-  for (let i = 0; i < 4; i += 1) await page.keyboard.press("ArrowDown");
-  assert.match(await problemText(page), /name = "walking-step"/, "what is chosen is not loaded yet");
-  await reach("Load the example");
+  await reach("Examples");
+  // They are open at first: closed, and opened again.
+  await page.keyboard.press("Enter");
+  assert.ok(await page.locator("#gallery").isHidden());
+  await page.keyboard.press("Enter");
+  assert.match(await problemText(page), /name = "walking-leg"/, "none is loaded yet");
+  await reach("Pivots in a box");
   await page.keyboard.press("Enter");
   await doing(page, "done");
   assert.match(await problemText(page), /name = "pivots-below"/);
@@ -482,6 +506,11 @@ test("the main job by keys alone, and by what a screen reader is told", async ()
   await reach("Pin linkage 2");
   await page.keyboard.press("Enter");
   assert.equal(await page.getByRole("button", { name: "Unpin pinned 1" }).count(), 1);
+  await page.locator("h1").click();
+  await reach("Build");
+  await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await page.locator("#tab-build").getAttribute("aria-selected"), "true");
   await reach("Linkage file");
   const [download] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("Enter")]);
   const [problem, linkage] = [join(work, "keys.toml"), join(work, "keys-linkage.toml")];
@@ -539,10 +568,9 @@ test("an answer never moves the view; the whole path is on the board; hints are 
   assert.equal(outside, 0);
   await page.getByRole("button", { name: "Pin linkage 1" }).click();
   assert.equal(await page.locator("#hints .done").count(), 2);
-  const names = await page.locator("#example-choice option:not([value=''])").allTextContents();
+  const names = await page.locator("#gallery .example").allTextContents();
   for (const [i, name] of names.entries()) {
-    await page.locator("#example-choice").selectOption(String(i));
-    await page.locator("#example").click();
+    await example(page, i);
     await doing(page, "done");
     assert.match(await status(page), /^Best: .* meets everything/, name);
   }
@@ -555,10 +583,13 @@ test("screens: two sizes, light and dark, with panels open", async () => {
   const { address, end } = await studio("--port", "18489");
   const { page, context } = await opened(browser, address, { reducedMotion: "reduce" });
   await doing(page, "done");
-  await open(page, "points-panel");
+  await tab(page, "points");
+  await tab(page, "wishes");
   await page.locator("#each-tolerance").check();
+  await tab(page, "points");
   await page.locator("#timing").selectOption("fixed");
   await page.locator("#each-weight").check();
+  await tab(page, "wishes");
   await open(page, "more-requirements");
   await page.locator("#space").check();
   await page.locator("#pivots").check();

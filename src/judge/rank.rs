@@ -231,10 +231,15 @@ pub fn count_distinct(problem: &Problem, found: &[Candidate], wanted: usize) -> 
     chosen(problem, found, wanted).len()
 }
 
+/// Returns the indices of the candidates that [`distinct`] gives.
+pub fn distinct_places(problem: &Problem, found: &[Candidate], wanted: usize) -> Vec<usize> {
+    chosen_but_for(problem, &Symmetries::of(problem), found, wanted)
+}
+
 /// Returns the best distinct candidates, at most `wanted`, ranked from 1, and all others in their order. Of mirror
 /// images that a symmetric target allows one is given.
 pub fn divided(problem: &Problem, found: Vec<Candidate>, wanted: usize) -> (Vec<Candidate>, Vec<Candidate>) {
-    let places = chosen_but_for(problem, &Symmetries::of(problem), &found, wanted);
+    let places = distinct_places(problem, &found, wanted);
     let mut found: Vec<Option<Candidate>> = found.into_iter().map(Some).collect();
     let ranked = (1..).zip(places);
     let best = ranked.filter_map(|(rank, place)| Some(Candidate { rank, ..found[place].take()? })).collect();

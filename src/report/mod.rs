@@ -73,7 +73,7 @@ pub mod exact_sheet;
 pub mod export;
 mod figure;
 pub mod front;
-mod grid;
+pub mod grid;
 pub mod html;
 mod labels;
 mod parts;

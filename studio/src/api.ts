@@ -104,7 +104,13 @@ export const cancel = (name: string) => answered(`${at(name)}/cancel`, null);
 export const resume = (name: string) => answered(`${at(name)}/resume`, null);
 export const open = async (name: string) => (await answered(`${at(name)}/opened`)).json() as Promise<Opened>;
 export const details = async (of: Source) => (await answered("/details", { of })).json() as Promise<Details>;
-export const exported = async (of: Source, format: string) => (await answered("/export", { of, format })).blob();
+export const judged = async (ask: Task, linkage: Shown["linkage"]) =>
+  (await answered("/judged", { ask, linkage })).json() as Promise<Shown>;
+export const exported = async (
+  of: Source,
+  format: string,
+  more: { set?: Record<string, string>; name?: string } = {},
+) => (await answered("/export", { of, format, ...more })).blob();
 export const compared = async (of: Source[]) => (await answered("/compare", { of })).json() as Promise<Compared>;
 export const comparedAs = async (of: Source[], form: string) => (await answered("/compare", { of, form })).blob();
 export const read = async (text: { kind: string; name: string; text: string; unit?: string; samples?: number }) =>
@@ -121,8 +127,11 @@ export const problemOf = async (task: Task) => (await answered("/problem.toml", 
 /** Why the studio gives this tab no connection, in words. */
 export async function whyClosed(): Promise<string> {
   try {
-    if ((await fetch("/beginning.json")).ok)
+    const reply = await fetch("/beginning.json");
+    if (reply.ok)
       return "The studio answers, but serves no more tabs at once: close another one, and this one goes on.";
+    if (reply.status === 401 || reply.status === 403)
+      return "Another studio answers here, which does not know this tab: open the address that it printed; your drawing is kept here.";
   } catch {
     // It has ended.
   }

@@ -1,6 +1,6 @@
 // The board: the target under the hand, the linkage over it.
 
-import { figure, pathThrough, px, roundLength, setAll, shape } from "../../src/report/html/player/svg.mjs";
+import { element, figure, pathThrough, px, roundLength, setAll, shape } from "../../src/report/html/player/svg.mjs";
 import {
   type BoxKind,
   between,
@@ -12,11 +12,12 @@ import {
   resized,
 } from "./boxes";
 import { Figure, type Moving } from "./figures";
+import type { Joint, Pose } from "./grab";
 import type { Box, Point, Task } from "./messages";
 import { Overview } from "./overview";
 import { dragging, type Grip, watchPointers } from "./pointers";
 import { ofStroke, segmentAt } from "./target";
-import { boxOf, longestMax, sizeOf, toleranceAt } from "./task";
+import { boxOf, extentTimes, longestMax, sizeOf, toleranceAt } from "./task";
 import type { Underlay } from "./underlay";
 import * as view from "./view";
 
@@ -28,7 +29,13 @@ const BESIDE = 128;
 /** Points of a dense path by which it is held. */
 const HANDLES = 10;
 
-export type Tool = "draw" | "points" | BoxKind | "photo-move" | "photo-scale";
+/** A pinned linkage, and the number of its colour. */
+export interface Pinned {
+  moving: Moving;
+  colour: number;
+}
+
+export type Tool = "draw" | "grab" | "points" | BoxKind | "photo-move" | "photo-scale";
 
 export interface Hand {
   /** A new target was drawn. */
@@ -46,8 +53,16 @@ export interface Hand {
   box(kind: BoxKind, box: Box | null, last: boolean): void;
   /** The circle of a tolerance is made larger or smaller. */
   tolerance(index: number, radius: number, last: boolean): void;
+  /** A joint of the linkage is being moved, from a pose. */
+  joint(pose: Pose, joint: Joint, to: Point): void;
+  /** The crank is being turned to an angle, degrees. */
+  turn(crankDeg: number): void;
   /** The photograph was clicked at an end of a known length. */
   marked(): void;
+  /** The view has changed. */
+  looked(): void;
+  /** The closer linkage that is offered is wanted. */
+  takeCloser(): void;
 }
 
 export class Board {
@@ -60,7 +75,16 @@ export class Board {
   });
   private back = shape("g");
   private pins = shape("g", { class: "pinned" });
-  private mechanism = new Figure();
+  private mechanism = new Figure(1, true);
+  /** The linkage that was shown before another took its place, while it fades. */
+  private before = new Figure();
+  private whiskers = shape("path", { class: "whisker" });
+  /** The ground under a walking machine, and its other leg, half a turn later. */
+  private earth = shape("path", { class: "earth" });
+  private second = new Figure();
+  /** The largest extent that is asked for, around the path. */
+  private ghost = shape("rect", { class: "ghost" });
+  private grips = shape("g");
   private marks = shape("g");
   private stroke = shape("path", { class: "stroke" });
   private boxGroup = shape("g");
@@ -71,12 +95,14 @@ export class Board {
   private height = 420;
   private view: view.View = view.opening(undefined);
   private overview = new Overview();
+  private closer = element("button", { type: "button", id: "closer", hidden: "" }) as HTMLButtonElement;
   private task: Task | null = null;
   private moving: Moving | null = null;
-  private pinned: Moving[] = [];
+  private pinned: Pinned[] = [];
   private corner: Corner | null = null;
   private part = 0;
   tool: Tool = "draw";
+  isWalker = false;
   selected = -1;
 
   constructor(
@@ -90,14 +116,21 @@ export class Board {
       this.back,
       this.boxGroup,
       this.sketch,
+      this.ghost,
+      this.earth,
       this.pins,
+      this.second.group,
+      this.before.group,
+      this.whiskers,
       this.mechanism.group,
       this.marks,
+      this.grips,
       this.stroke,
       this.scaleBar,
       this.overview.group,
     );
-    place.append(this.svg);
+    this.closer.addEventListener("click", () => this.hand.takeCloser());
+    place.append(this.svg, this.closer);
     watchPointers(
       this.svg,
       (event) => this.take(event),
@@ -160,6 +193,7 @@ export class Board {
   look(at: view.View) {
     this.view = at;
     this.draw();
+    this.hand.looked();
   }
 
   /** The view of an empty board. */
@@ -183,7 +217,7 @@ export class Board {
 
   /** What the linkages that are shown need. */
   private linkages(): Box[] {
-    return [this.moving, ...this.pinned].flatMap((one) => (one ? [one.box() as Box] : []));
+    return [this.moving, ...this.pinned.map(({ moving }) => moving)].flatMap((one) => (one ? [one.box() as Box] : []));
   }
 
   /** What is in view. */
@@ -191,13 +225,36 @@ export class Board {
     return view.windowOf(this.view, this.frame);
   }
 
-  show(task: Task, moving: Moving | null, pinned: Moving[]) {
+  /** Shows the target, a linkage, and those that are pinned; `another`: it is not the one that was shown before. */
+  show(task: Task, moving: Moving | null, pinned: Pinned[], another = false) {
+    if (another && this.moving && moving) this.fade(this.moving);
     this.task = task;
     this.moving = moving;
     this.pinned = pinned;
     if (this.selected >= task.points.length) this.selected = -1;
     if (this.corner && !task[this.corner.kind]) this.corner = null;
     this.draw();
+  }
+
+  /** Offers a linkage that comes nearer by a part than the one that is held; null: there is none. */
+  offer(part: number | null) {
+    this.closer.hidden = part === null;
+    if (part !== null) this.closer.textContent = `a closer one: −${Math.round(100 * part)} %`;
+  }
+
+  /** Lets a linkage fade while another appears in its place. */
+  private fade(before: Moving) {
+    this.before.show(before, this.toPixel);
+    this.before.pose(this.part);
+    for (const [group, name] of [
+      [this.before.group, "leaving"],
+      [this.mechanism.group, "coming"],
+    ] as const) {
+      group.classList.remove(name);
+      // Read, so that the same animation begins anew.
+      group.getBoundingClientRect();
+      group.classList.add(name);
+    }
   }
 
   redraw() {
@@ -207,6 +264,8 @@ export class Board {
   pose(part: number) {
     this.part = part;
     this.mechanism.pose(part);
+    if (this.isWalker) this.second.pose((part + 0.5) % 1);
+    if (this.tool === "grab") this.drawGrips();
     for (const ghost of this.ghosts) ghost.pose(part);
   }
 
@@ -240,9 +299,9 @@ export class Board {
         class: `target-point${i === 0 ? " first" : ""}${chosen ? " chosen" : ""}`,
         cx,
         cy,
-        r: chosen ? 6.5 : many ? 1.6 : 5,
+        r: chosen ? 6.5 : 5,
       });
-      if (many && !held.has(i)) return [dot];
+      if (many && !held.has(i)) return [];
       if (many && !chosen) setAll(dot, { r: 4.4 });
       return [dot, shape("circle", { class: "handle", cx, cy, r: many ? 9 : 16, "data-point": i })];
     });
@@ -264,9 +323,14 @@ export class Board {
     this.marks.replaceChildren(...marks, ...rims);
     while (this.ghosts.length < this.pinned.length) this.ghosts.push(new Figure(0.8));
     this.pins.replaceChildren(...this.pinned.map((_, i) => this.ghosts[i].group));
-    this.pinned.forEach((moving, i) => {
+    this.pinned.forEach(({ moving, colour }, i) => {
+      setAll(this.ghosts[i].group, { class: `figure pin-${colour}` });
       this.ghosts[i].show(moving, this.toPixel);
     });
+    setAll(this.whiskers, { d: this.errors(task.points) });
+    this.drawWalker(task.points);
+    this.drawGhost(task);
+    this.drawGrips();
     this.mechanism.show(this.moving, this.toPixel);
     this.drawBox();
     this.overview.show(boxOf(task.points), this.moving, this.window, this.frame);
@@ -277,6 +341,81 @@ export class Board {
     if (longest !== null) this.scaleBar.append(...this.bar(true, longest, y - 22, "longest link "));
     // Another view of one that stands still.
     this.pose(this.part);
+  }
+
+  /** The ground at the height of the lowest point, and the second leg where the crank turns on and on. */
+  private drawWalker(points: Point[]) {
+    const low = boxOf(points)?.[1];
+    const walks = this.isWalker && this.moving?.cycle.cyclic === true && low !== undefined;
+    this.second.show(walks ? this.moving : null, this.toPixel);
+    this.second.group.classList.add("second");
+    if (!this.isWalker || low === undefined) return setAll(this.earth, { d: "" });
+    const y = px(this.toPixel([0, low])[1] + 2);
+    const hatches = Array.from({ length: Math.ceil(this.width / 16) }, (_, i) => `M${16 * i + 10} ${y}l-7 8`);
+    return setAll(this.earth, { d: `M0 ${y}H${this.width}${hatches.join("")}` });
+  }
+
+  /** The box, as wide as high, that a limit on the extent leaves, around what is shown. */
+  private drawGhost(task: Task) {
+    const times = task.points.length > 2 ? extentTimes(task) : null;
+    this.ghost.classList.toggle("absent", times === null);
+    const around = (this.moving?.box() as Box | undefined) ?? boxOf(task.points);
+    if (times === null || !around) return;
+    const [x, y] = this.toPixel([(around[0] + around[2]) / 2, (around[1] + around[3]) / 2]);
+    const side = times * sizeOf(task.points) * Math.SQRT1_2 * this.view.scale;
+    setAll(this.ghost, { x: px(x - side / 2), y: px(y - side / 2), width: px(side), height: px(side) });
+  }
+
+  /** Where the joints stand now. */
+  get standing(): Pose | null {
+    const joints = this.moving?.cycle.at(this.moving.at(this.part));
+    if (!this.moving || !joints) return null;
+    const { A, B } = this.moving.shown.linkage;
+    return { A, B, C: joints.C as Point, D: joints.D as Point, P: joints.P as Point };
+  }
+
+  /** What a linkage is grabbed by: its joints, and the middle of the crank to turn it. */
+  private drawGrips() {
+    const pose = this.tool === "grab" ? this.standing : null;
+    if (!pose) return this.grips.replaceChildren();
+    const grip = (name: string, at: Point) => {
+      const [cx, cy] = this.toPixel(at);
+      return shape("circle", { class: `grip ${name}`, cx: px(cx), cy: px(cy), r: 13, "data-joint": name });
+    };
+    const middle: Point = [(pose.A[0] + pose.C[0]) / 2, (pose.A[1] + pose.C[1]) / 2];
+    const joints = (Object.keys(pose) as Joint[]).map((name) => grip(name, pose[name]));
+    return this.grips.replaceChildren(grip("turn", middle), ...joints);
+  }
+
+  /** A joint that is carried, or the crank that is turned. */
+  private grab(name: string, start: PointerEvent): Grip | null {
+    const pose = this.standing;
+    if (!pose) return null;
+    const [from, { A }] = [this.at(start), pose];
+    if (name === "turn") {
+      const step = (event: PointerEvent) => {
+        const [x, y] = this.at(event);
+        this.hand.turn((Math.atan2(y - A[1], x - A[0]) * 180) / Math.PI);
+      };
+      return { step, abort: () => {} };
+    }
+    const held = pose[name as Joint];
+    return this.changing(start, (event) => {
+      const now = this.at(event);
+      this.hand.joint(pose, name as Joint, [held[0] + now[0] - from[0], held[1] + now[1] - from[1]]);
+    });
+  }
+
+  /** Lines from the points to the places where the linkage meets them, where these lie apart. */
+  private errors(points: Point[]): string {
+    const met = this.moving?.cycle.points.slice(0, points.length) ?? [];
+    return met
+      .map(({ reached }, i) => {
+        if (!reached) return "";
+        const [from, to] = [this.toPixel(points[i]), this.toPixel(reached)];
+        return Math.hypot(to[0] - from[0], to[1] - from[1]) < 1.5 ? "" : pathThrough([from, to]);
+      })
+      .join("");
   }
 
   /** A length at the rim of the board: of the limit with its words above, as it may run off the board. */
@@ -297,7 +436,9 @@ export class Board {
   /** What a pointer that goes down here holds. */
   private take(event: PointerEvent): Grip | null {
     const target = event.target as Element;
-    const [point, corner, rim] = ["point", "corner", "rim"].map((name) => target.getAttribute(`data-${name}`));
+    const [point, corner, rim, joint] = ["point", "corner", "rim", "joint"].map((name) =>
+      target.getAttribute(`data-${name}`),
+    );
     this.svg.focus({ preventScroll: true });
     if (!this.task) return null;
     const overviewed = target.closest(".overview") && this.overview.pointAt(this.toPixel(this.at(event)));
@@ -306,6 +447,7 @@ export class Board {
       return null;
     }
     if (event.shiftKey) return this.pan(event);
+    if (this.tool === "grab") return joint ? this.grab(joint, event) : this.pan(event);
     if (this.tool === "photo-move" && this.underlay.there) return this.moveUnderlay(event);
     if (this.tool === "photo-scale" && this.underlay.there) {
       this.underlay.mark(this.at(event));
@@ -315,7 +457,7 @@ export class Board {
     if (this.tool === "pivots_in" || this.tool === "footprint_in") return this.sketchBox(this.tool, this.at(event));
     if (corner) return this.resize(corner, event);
     if (rim !== null) return this.widen(Number(rim), event);
-    if (point !== null) return this.carry(Number(point), event);
+    if (point !== null) return this.carry(this.nearest(event), event);
     return this.tool === "points" ? this.addPoint(event) : this.pen(event);
   }
 
@@ -346,6 +488,15 @@ export class Board {
       const middle = (one: Point, other: Point): Point => [(one[0] + other[0]) / 2, (one[1] + other[1]) / 2];
       this.look(view.carried(this.view, middle(p, q), middle(a, b)));
     };
+  }
+
+  /** The point nearest to a pointer among those by which the path is held: their handles overlap. */
+  private nearest(event: PointerEvent): number {
+    const [x, y] = this.at(event);
+    const points = this.task?.points ?? [];
+    const far = (i: number) => Math.hypot(points[i][0] - x, points[i][1] - y);
+    const held = [...this.marks.querySelectorAll("[data-point]")].map((one) => Number(one.getAttribute("data-point")));
+    return held.reduce((best, i) => (far(i) < far(best) ? i : best));
   }
 
   private carry(index: number, start: PointerEvent, begin = () => this.hand.grasp()): Grip {

@@ -17,9 +17,17 @@ function unlike({ linkage: p }: Shown, { linkage: q }: Shown): number {
   return Math.max(...ps.map((value, i) => Math.abs(value - qs[i]))) / (size || 1);
 }
 
+/** Whether two are one linkage, which the hand has moved. */
+export function isSame(one: Shown, other: Shown): boolean {
+  return (one.number !== undefined && one.number === other.number) || unlike(one, other) < ANOTHER;
+}
+
 /** The choice among candidates that have changed: the same linkage, or what it has become; null where it is gone. */
 export function followed(choice: Choice, candidates: Shown[]): Choice {
   if (!choice || "pin" in choice) return choice;
+  const { number } = choice.candidate;
+  const itself = number === undefined ? undefined : candidates.find((one) => one.number === number);
+  if (itself) return { candidate: itself };
   const far = candidates.map((one) => unlike(choice.candidate, one));
   const nearest = far.indexOf(Math.min(...far));
   return far[nearest] < ANOTHER ? { candidate: candidates[nearest] } : null;

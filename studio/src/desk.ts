@@ -25,6 +25,7 @@ const STAYS = 3000;
 const A_LETTER = 60;
 
 export class Desk {
+  readonly host: Host;
   private details: DetailsPanel;
   private jobs: JobsPanel;
   private share: Share;
@@ -37,6 +38,7 @@ export class Desk {
 
   constructor(place: HTMLElement, sharePlace: HTMLElement, page: Omit<Host, "say">) {
     const host: Host = { ...page, say: (text, wrong) => this.say(text, wrong) };
+    this.host = host;
     document.body.append(element("div", { id: "desk-message" }, [this.said, this.close]));
     this.close.addEventListener("click", () => this.say(""));
     this.details = new DetailsPanel(place, host);

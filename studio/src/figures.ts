@@ -2,6 +2,7 @@
 
 import { Cycle } from "../../src/report/html/player/cycle.mjs";
 import { pathThrough, px, setAll, shape } from "../../src/report/html/player/svg.mjs";
+import { Machine } from "./machine";
 import type { Point, Shown } from "./messages";
 
 export type Toward = (p: Point) => Point;
@@ -48,6 +49,16 @@ export class Moving {
     const used = cycle.used;
     const [low, high] = used && used[1] - used[0] > 0.5 ? used : cycle.range;
     return low + (high - low) * (0.5 - 0.5 * Math.cos(2 * Math.PI * part));
+  }
+
+  /** The part of the motion at which the crank stands at an angle, as near as it comes. */
+  partOf(crankDeg: number): number {
+    const { cycle } = this;
+    if (cycle.cyclic) return ((((cycle.sense * (crankDeg - cycle.start)) / 360) % 1) + 1) % 1;
+    const [low, high] = [this.at(0), this.at(0.5)];
+    const turned = crankDeg - 360 * Math.round((crankDeg - (low + high) / 2) / 360);
+    const along = high > low ? Math.min(Math.max((turned - low) / (high - low), 0), 1) : 0;
+    return Math.acos(1 - 2 * along) / (2 * Math.PI);
   }
 
   box(): number[] {
@@ -97,15 +108,20 @@ export class Figure {
   private bars = shape("path", { class: "bar" });
   private pins = Array.from({ length: 4 }, () => shape("circle", { class: "pin" }));
   private point = shape("circle", { class: "tracer" });
+  private machine: Machine | null;
   private moving: Moving | null = null;
   private toward: Toward = (p) => p;
 
-  constructor(scale = 1) {
+  /** `isMachine`: with ground, motor, letters and trail. */
+  constructor(scale = 1, isMachine = false) {
+    this.machine = isMachine ? new Machine() : null;
     this.pins.forEach((pin, i) => {
       setAll(pin, { r: (i < 2 ? 5.4 : 4.4) * scale });
     });
     setAll(this.point, { r: 5 * scale });
-    this.group.append(this.ground, this.curve, this.coupler, this.edges, this.bars, ...this.pins, this.point);
+    const [under, over] = this.machine ? [[this.machine.under], [this.machine.over]] : [[], []];
+    const links = [this.coupler, this.edges, this.bars];
+    this.group.append(this.ground, this.curve, ...under, ...links, ...over, ...this.pins, this.point);
   }
 
   show(moving: Moving | null, toward: Toward) {
@@ -116,6 +132,7 @@ export class Figure {
     const { A, B } = moving.shown.linkage;
     setAll(this.curve, { d: pathThrough(moving.curve.map((p) => p && toward(p))) });
     setAll(this.ground, { d: pathThrough([toward(A), toward(B)]) });
+    this.machine?.show(moving, toward);
   }
 
   pose(part: number) {
@@ -132,5 +149,6 @@ export class Figure {
       setAll(this.pins[i], { cx: px(x), cy: px(y) });
     });
     setAll(this.point, { cx: px(p[0]), cy: px(p[1]) });
+    this.machine?.pose(moving, part, toward, [a, b, c, d, p]);
   }
 }

@@ -2,19 +2,24 @@
 
 import * as api from "./api";
 import type { Point, Reading, Task } from "./messages";
-import { ofText } from "./target";
-import { taskOf, withPoints } from "./task";
+import { ofText, resampled } from "./target";
+import { roundTo, settled, sizeOf, taskOf, withPoints } from "./task";
 
 /** What the studio's server reads at most. */
 const MOST = 200_000;
 
-export type Kind = "csv" | "svg" | "problem";
+/** A report's problem stands in an element of its own; the rest of it, which may be long, is not sent. */
+const REPORT = /<script type="application\/json" id="problem">[^<]*<\/script>/g;
+const MOST_OF_A_REPORT = 50_000_000;
+
+export type Kind = "csv" | "svg" | "problem" | "report";
 
 /** What a text is, by its name and its beginning; null: bare numbers. */
 export function kindOf(text: string, name = ""): Kind | null {
-  const ending = name.toLowerCase().match(/\.(csv|svg|toml)$/)?.[1];
-  if (ending) return ending === "toml" ? "problem" : (ending as Kind);
+  const ending = name.toLowerCase().match(/\.(csv|svg|toml|html?)$/)?.[1];
+  if (ending) return ending === "toml" ? "problem" : ending.startsWith("htm") ? "report" : (ending as Kind);
   const start = text.trimStart().slice(0, 400).toLowerCase();
+  if (/^<!doctype html/.test(start)) return "report";
   if (/^(<\?xml|<!doctype svg|<!--|<svg)/.test(start)) return "svg";
   if (/^\s*(format\s*=|\[task|#[^\n]*\n\s*format\s*=)/m.test(text)) return "problem";
   const line = text.split(/\r?\n/).find((one) => one.trim() !== "" && !one.startsWith("#")) ?? "";
@@ -28,8 +33,9 @@ export async function taskOfText(
   task: Task,
   samples?: number,
 ): Promise<{ task: Task; said: string } | string> {
-  if (text.length > MOST) return `this is too long: ${MOST} characters at most are read`;
   const kind = kindOf(text, name);
+  if (kind === "report") text = text.match(REPORT)?.at(-1) ?? "";
+  if (text.length > MOST) return `this is too long: ${MOST} characters at most are read`;
   if (!kind) {
     const points = ofText(text);
     return typeof points === "string"
@@ -60,6 +66,19 @@ export async function taskOfText(
   return { task: next, said };
 }
 
+/** The most points that are searched, and as many as are taken of more. */
+const MOST_POINTS = 1000;
+const EVENLY = 200;
+
+/** A task with fewer points, evenly along the path, where it has more than can be searched; else null. */
+export function evenly(task: Task): Task | null {
+  if (task.points.length <= MOST_POINTS) return null;
+  const { timing: _t, tolerances: _e, weights: _w, ...rest } = task;
+  const size = sizeOf(task.points);
+  const points = resampled(task.points, EVENLY, task.closed);
+  return settled({ ...rest, points: points.map((p) => p.map((x) => roundTo(x, size, 7)) as Point) });
+}
+
 /** Whether what is typed or pasted there is a text of its own. */
 export const takesText = (target: EventTarget | null) =>
   (target as Element | null)?.closest?.("textarea, input:not([type=checkbox], [type=range], [type=file])") != null;
@@ -73,7 +92,10 @@ export function watchFiles(
 ) {
   const take = async (file: File) => {
     if (/^image\/(?!svg)/.test(file.type)) picture(file);
-    else text(file.size > MOST ? " ".repeat(MOST + 1) : await file.text(), file.name);
+    else {
+      const most = /\.html?$/i.test(file.name) ? MOST_OF_A_REPORT : MOST;
+      text(file.size > most ? " ".repeat(MOST + 1) : await file.text(), file.name);
+    }
   };
   const over = (event: DragEvent) => {
     event.preventDefault();

@@ -64,8 +64,9 @@ export class Helps {
     private take: (make: (task: Task) => Task, said: string) => void,
   ) {}
 
-  show(relaxations: Relaxation[], unit: string | undefined) {
-    const key = JSON.stringify([relaxations, unit]);
+  /** `instead`: another task that is offered too, and what it is. */
+  show(relaxations: Relaxation[], unit: string | undefined, instead: { task: Task; said: string } | null) {
+    const key = JSON.stringify([relaxations, unit, instead]);
     if (key === this.told) return;
     this.told = key;
     const items = relaxations.map(({ set, rms }) => {
@@ -81,6 +82,11 @@ export class Helps {
         ]),
       ]);
     });
+    if (instead) {
+      const button = element("button", { type: "button" }, [instead.said]);
+      button.addEventListener("click", () => this.take(() => instead.task, instead.said));
+      items.push(element("li", {}, [button]));
+    }
     changing(
       this.list,
       () => {

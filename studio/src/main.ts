@@ -3,49 +3,39 @@
 import { figure } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import { Board, type Tool } from "./board";
-import { type Choice, followed, placeOf } from "./choice";
+import { BuildPanel } from "./build";
+import { ByHand } from "./byhand";
+import { isSame } from "./choice";
+import { Clock } from "./clock";
 import { Connection } from "./connection";
 import { Desk } from "./desk";
-import { EXAMPLES } from "./examples";
+import { EXAMPLES, type Example } from "./examples";
 import { type Moving, movingOf } from "./figures";
-import { takesText, taskOfText, watchFiles } from "./files";
+import { evenly, takesText, taskOfText, watchFiles } from "./files";
 import { changing } from "./focus";
+import { Gallery } from "./gallery";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
 import { remember, remembered, Steps } from "./memory";
-import type { Answer, Point, Solution, Task } from "./messages";
+import type { Answer, Point, Shown, Solution, Task } from "./messages";
+import { nameFault } from "./names";
 import { Nine } from "./nine";
 import { Pace } from "./pace";
 import { PhotographPanel } from "./photograph";
 import { fillRequirements, listenToRequirements } from "./requirements";
 import { Said } from "./said";
+import { MOST_PINNED, Showing } from "./showing";
 import { SizeChip } from "./size";
 import { Stays } from "./stays";
 import { inWords, isExact, Strip } from "./strip";
+import { SureChip } from "./sure";
 import { Table } from "./table";
+import { Tabs } from "./tabs";
 import { moved } from "./target";
-import {
-  drawnAnew,
-  pathAlone,
-  settled,
-  taskOf,
-  withAdded,
-  withLengthsTimes,
-  withMoved,
-  withoutStale,
-  withPoints,
-  withRemoved,
-  withToleranceAt,
-} from "./task";
+import * as tasks from "./task";
 import { type Placed, Underlay } from "./underlay";
 import { rescaled, type View } from "./view";
 import { Voice } from "./voice";
-
-/** Seconds of a turn. */
-const TURN = 5;
-const MOST_PINNED = 3;
-/** An answer that is less than so much better than the one that was brought back does not replace it. */
-const BETTER = 0.999;
 
 /** What a step back brings back. */
 interface State {
@@ -54,40 +44,61 @@ interface State {
   view: View;
   answer: Answer | null;
   chosen: { pin: number } | { candidate: number } | null;
+  byHand: Shown | null;
+  isWalker: boolean;
 }
+
+/** Milliseconds after which a view that rests is remembered. */
+const REST = 300;
+
+const TOOLS: Tool[] = ["draw", "points", "grab", "pivots_in", "footprint_in", "photo-move", "photo-scale"];
+/** What a tool is for, said when it is taken. */
+const TOOL_SAID: Partial<Record<Tool, string>> = {
+  points: "A click on the path puts a point there, a click beside it one behind the last. Clear begins anew.",
+  grab: "Drag a joint of the linkage, or the middle of its crank to turn it. Drag elsewhere to move the board.",
+};
 
 const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 const input = (id: string) => byId<HTMLInputElement>(id);
 
 class Page {
-  private task: Task = EXAMPLES[0][1];
+  private task: Task = EXAMPLES[0].task;
   private steps = new Steps<State>();
-  /** The version that a step back or forth brought, with the answer that stood there. */
-  private restored: { version: number; answer: Answer } | null = null;
   private version = 0;
   /** The edit that began this target: what is said of earlier ones belongs to another. */
   private since = 0;
   private heard = 0;
-  private answer: Answer | null = null;
-  private choice: Choice = null;
-  private pinned: Solution[] = [];
   /** What the board and the strip show: the candidates, then what is pinned. */
   private moving: Moving[] = [];
+  /** The linkage that the board has shown last. */
+  private onBoard: Shown | null = null;
   private hints = true;
   private begunWith = "null";
   private filling: ReturnType<typeof setTimeout> | undefined;
-  private part = 0;
-  private playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
-  private board: Board;
-  private strip: Strip;
-  private size: SizeChip;
+  private looking: ReturnType<typeof setTimeout> | undefined;
   private connection: Connection | null = null;
-  private desk: Desk;
-  private pace = new Pace();
+  /** What the page has written among the coordinates; anything else is the user's, until it is taken. */
+  private written = "";
+  private coordinates = byId<HTMLTextAreaElement>("coordinates");
+
   private voice = new Voice();
   private said = new Said(byId("status"), byId<HTMLProgressElement>("progress"), this.voice);
+  private pace = new Pace();
   private guide = new Guide();
+  private sure = new SureChip(byId("sure"));
   private underlay = new Underlay(() => this.showUnderlay());
+  private board = this.makeBoard();
+  private clock = new Clock((part) => this.pose(part));
+  private strip = new Strip(
+    byId("strip"),
+    (i) => this.choose(i),
+    (i) => this.pin(i),
+  );
+  private nine = new Nine(byId("nine"), () => {
+    this.showing.filtered();
+    this.draw();
+  });
+  private showing = new Showing(this.nine);
   private photograph = new PhotographPanel(
     this.underlay,
     () => this.board,
@@ -100,28 +111,43 @@ class Page {
     (task) => this.replace(task),
     (text) => this.say(text),
   );
-  private nine = new Nine(byId("nine"), () => {
-    this.choice = followed(this.choice, this.candidates());
-    this.draw();
-  });
   private helps = new Helps(byId("helps"), (make, said) => {
     this.replace(make(this.task));
     this.say(`Changed: ${said}.`);
   });
-  private stays = new Stays(byId("stays"), () => this.replace(pathAlone(this.task)));
-  private coordinates = byId<HTMLTextAreaElement>("coordinates");
-  /** What the page has written there; anything else is the user's, until it is taken. */
-  private written = "";
+  private stays = new Stays(byId("stays"), () => this.replace(tasks.pathAlone(this.task)));
   private kept = new Kept(byId("kept"), (make) => this.replace(make(this.task)));
+  private size = new SizeChip(byId("board"), (by) => this.lengthsTimes(by));
+  private desk = new Desk(byId("desk"), byId("share"), {
+    task: () => this.task,
+    chosen: () => this.chosen(),
+    pinned: () => this.showing.pinned,
+    take: (task) => this.open(tasks.taskOf({ ...task, version: 0 })),
+    keep: (one) => this.keepShown(one),
+  });
+  private byHand = new ByHand(byId("by-hand"), {
+    task: () => this.task,
+    changed: () => this.handChanged(),
+    note: () => this.note(),
+    fit: (kept) => this.fitAgain(kept),
+    say: (text) => this.said.refuse(text),
+  });
+  private build = new BuildPanel(byId("build"), this.desk.host, () => this.rank());
+  private gallery = new Gallery(byId("gallery"), byId<HTMLButtonElement>("examples"), (example) => this.load(example));
 
   constructor() {
-    this.board = new Board(
+    new Tabs(document.querySelector(".rail") as HTMLElement, () => this.build.later());
+    this.listen();
+  }
+
+  private makeBoard(): Board {
+    return new Board(
       byId("board"),
       {
         drawn: (points, closed) => {
           this.pace.penUp();
           this.guide.done("draw");
-          this.replace(drawnAnew(this.task, points, closed), { fresh: true });
+          this.replace(tasks.drawnAnew(this.task, points, closed), { fresh: true });
           this.stays.show(this.task);
         },
         grasp: () => this.note(),
@@ -130,64 +156,69 @@ class Page {
           if (before) this.restore(before);
         },
         drag: (index, to, last) => this.drag(index, to, last),
-        add: (at, after) => this.replace(withAdded(this.task, after, at)),
-        remove: (index) => this.replace(withRemoved(this.task, index)),
+        add: (at, after) => this.replace(tasks.withAdded(this.task, after, at)),
+        remove: (index) => this.replace(tasks.withRemoved(this.task, index)),
         box: (kind, box, last) => {
           this.put({ ...this.task, [kind]: box ?? undefined }, { moving: !last });
           if (last && this.board.tool === kind) this.use("draw");
         },
-        tolerance: (index, radius, last) => this.put(withToleranceAt(this.task, index, radius), { moving: !last }),
+        tolerance: (index, radius, last) =>
+          this.put(tasks.withToleranceAt(this.task, index, radius), { moving: !last }),
+        joint: (pose, joint, to) => this.byHand.drag(pose, joint, to),
+        turn: (crankDeg) => this.turn(crankDeg),
         marked: () => this.photograph.marked(),
+        looked: () => {
+          // A view that the user has changed is remembered, once it rests.
+          clearTimeout(this.looking);
+          if (this.connection) this.looking = setTimeout(() => this.keep(), REST);
+        },
+        takeCloser: () => {
+          this.showing.takeBest();
+          this.draw();
+        },
       },
       (text) => this.say(text),
       this.underlay,
     );
-    this.strip = new Strip(
-      byId("strip"),
-      (i) => this.choose(i),
-      (i) => this.pin(i),
-    );
-    this.desk = new Desk(byId("desk"), byId("share"), {
-      task: () => this.task,
-      chosen: () => this.chosen(),
-      pinned: () => this.pinned,
-      take: (task) => {
-        this.open(taskOf({ ...task, version: 0 }));
-      },
-      keep: (one) => this.keepShown(one),
-    });
-    this.size = new SizeChip(byId("board"), (by) => {
-      this.note();
-      if (this.underlay.placed) this.underlay.lengthsTimes(by);
-      this.board.look(rescaled(this.board.looking, by));
-      this.put(withLengthsTimes(this.task, by), {});
-    });
-    this.listen();
   }
 
   /** Takes another problem, and brings its path into the middle. */
-  private open(task: Task) {
+  private open(task: Task, isWalker = false) {
     this.replace(task, { fresh: true });
+    this.walk(isWalker);
     this.board.fitPath(task);
+  }
+
+  private load({ task, isWalker }: Example) {
+    this.use("draw");
+    this.open(task, isWalker);
   }
 
   async begin() {
     const kept = remembered();
     let view = kept?.view;
-    if (kept) ({ task: this.task, pinned: this.pinned, hints: this.hints, begunWith: this.begunWith } = kept);
+    let isWalker = kept ? kept.isWalker === true : EXAMPLES[0].isWalker === true;
+    if (kept) {
+      ({ task: this.task, hints: this.hints, begunWith: this.begunWith } = kept);
+      this.showing.pinned = kept.pinned;
+      if (nameFault(this.task.name) !== null) this.task = { ...this.task, name: "drawing" };
+    }
     try {
       const begunWith = await api.beginning();
       const given = JSON.parse(begunWith) as Task | null;
       if (given && this.begunWith !== begunWith) {
         if (kept) this.note();
         view = undefined;
-        this.task = taskOf({ ...given, version: 0 });
+        isWalker = false;
+        this.task = tasks.taskOf({ ...given, version: 0 });
       }
       this.begunWith = begunWith;
+      this.gallery.open(!kept && !given && innerHeight >= 600);
     } catch {
       // The studio has ended or is busy: what is remembered is shown all the same, and what was given waits for a reload.
     }
     byId("hints").hidden = !this.hints;
+    this.walk(isWalker);
     this.board.show(this.task, null, []);
     if (view) this.board.look(view);
     else if (this.task.points.length > 0) this.board.fitPath(this.task);
@@ -203,17 +234,7 @@ class Page {
     );
     this.put(this.task, {});
     void this.desk.begin();
-    let last = performance.now();
-    const frame = (now: number) => {
-      if (this.playing) {
-        this.part = (this.part + Math.min(now - last, 100) / 1000 / TURN) % 1;
-        this.board.pose(this.part);
-        this.strip.pose(this.part);
-      }
-      last = now;
-      requestAnimationFrame(frame);
-    };
-    requestAnimationFrame(frame);
+    this.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
   }
 
   /** Another task in place of the one that stands, which can be undone. */
@@ -225,17 +246,64 @@ class Page {
   private drag(index: number, to: Point, last: boolean) {
     if (last) this.guide.done("drag");
     // Nine points are precise: none takes its neighbours along.
-    this.put(withMoved(this.task, moved(this.task.points, index, to, this.task.closed)), { moving: !last });
+    this.put(tasks.withMoved(this.task, moved(this.task.points, index, to, this.task.closed)), { moving: !last });
+  }
+
+  private lengthsTimes(by: number) {
+    this.note();
+    if (this.underlay.placed) this.underlay.lengthsTimes(by);
+    this.board.look(rescaled(this.board.looking, by));
+    this.put(tasks.withLengthsTimes(this.task, by), {});
   }
 
   private use(tool: Tool) {
     this.board.tool = tool;
-    if (tool === "points" && this.task.points.length > 0)
-      this.desk.say(
-        "A click on the path puts a point there, a click beside it one behind the last. Clear begins anew.",
-      );
+    const said = TOOL_SAID[tool];
+    if (said && this.task.points.length > 0) this.desk.say(said);
     for (const button of document.querySelectorAll("[id^=tool-]"))
       button.setAttribute("aria-pressed", String(button.id === `tool-${tool}`));
+    if (tool === "grab") this.grab();
+    this.board.redraw();
+  }
+
+  /** Takes the linkage on the board into the hand: it stands still, and is changed from now on. */
+  private grab() {
+    const chosen = this.chosen();
+    if (!chosen) return this.desk.say("There is no linkage to grab yet.");
+    this.play(false);
+    if (!this.byHand.shown) {
+      this.note();
+      this.byHand.take(chosen.shown);
+    }
+  }
+
+  /** Another linkage is in the hand, or none any more: the crank stays where it stands. */
+  private handChanged() {
+    const before = this.board.standing;
+    this.draw();
+    const { shown } = this.byHand;
+    if (!shown) {
+      if (this.board.tool === "grab") this.use("draw");
+    } else if (before) {
+      const { A } = shown.linkage;
+      this.turn((Math.atan2(before.C[1] - A[1], before.C[0] - A[0]) * 180) / Math.PI);
+    }
+    this.desk.changed(true);
+    this.build.later();
+  }
+
+  private turn(crankDeg: number) {
+    const moving = this.moving[this.place()];
+    if (!moving) return;
+    this.play(false);
+    this.clock.set(moving.partOf(crankDeg));
+  }
+
+  /** Searches with what is locked of the linkage in the hand. */
+  private fitAgain(kept: Record<string, string>) {
+    const others = Object.entries(this.task.kept ?? {}).filter(([key]) => !key.startsWith("design."));
+    this.put({ ...this.task, kept: { ...Object.fromEntries(others), ...kept } }, { fresh: true });
+    this.say("The rest is fitted again. What is locked stands under Wishes, kept from the problem file.");
   }
 
   private showUnderlay() {
@@ -247,13 +315,20 @@ class Page {
     const read = await taskOfText(text, name, this.task, input("samples").valueAsNumber || undefined);
     if (typeof read === "string") return this.said.refuse(`These are no coordinates: ${read}`);
     if (text === this.coordinates.value) this.written = text;
+    const fewer = evenly(read.task);
+    if (fewer) {
+      this.said.refuse(
+        `These are ${read.task.points.length} points, more than the studio searches: ${fewer.points.length} evenly along them are taken instead.`,
+      );
+      return this.open(fewer);
+    }
     this.open(read.task);
     return this.say(`Taken: ${read.said}.`);
   }
 
   /** Takes a task: shown, remembered, sent. */
   private put(edited: Task, how: { moving?: boolean; fresh?: boolean }) {
-    const task = withoutStale(this.task, edited);
+    const task = tasks.withoutStale(this.task, edited);
     if (edited.expect && !task.expect)
       this.desk.say(
         "The figures published for this problem hold for it as it was opened: they are let go. Undo brings them back.",
@@ -263,11 +338,17 @@ class Page {
     const short = task.points.length < 3;
     if (how.fresh || short) {
       this.since = this.version;
-      this.choice = null;
-      this.answer = null;
-      this.nine.hear(null);
+      this.showing.clear();
+      this.onBoard = null;
+      this.sure.show(null, "");
+      if (this.byHand.shown) this.byHand.take(null);
     }
     this.stays.show(null);
+    const held = how.moving ? this.showing.hold() : undefined;
+    if (!how.moving) {
+      this.showing.letGo();
+      this.byHand.again();
+    }
     // The controls and the strip can wait for a hand that moves; the board cannot.
     clearTimeout(this.filling);
     if (how.moving) {
@@ -284,7 +365,7 @@ class Page {
     this.connection?.send({
       ...task,
       version: this.version,
-      ...(how.moving ? { moving: true } : {}),
+      ...(how.moving ? { moving: true, held } : {}),
       ...(fresh ? { fresh } : {}),
     });
   }
@@ -304,86 +385,82 @@ class Page {
       document.body.dataset.doing = "refused";
       return;
     }
-    this.answer = this.asRestored(answer);
     this.pace.answered(answer, this.version);
-    this.nine.hear(answer);
-    const choice = followed(this.choice, this.candidates());
-    if (this.choice && !choice && answer.candidates.length > 0)
+    if (this.showing.hear(answer, this.version).chosenIsGone)
       this.desk.say("The linkage that was chosen is not among these any more: the best one is shown.");
-    this.choice = choice;
     document.body.dataset.doing = answer.doing;
     document.body.dataset.answered = String(answer.version);
     this.draw();
-    const best = this.answer.candidates[0];
+    const best = this.showing.answer?.candidates[0];
     const unit = this.task.unit ? ` ${this.task.unit}` : "";
     const near =
       best && (best.ability || isExact(best))
         ? "exactly through the points"
         : `rms ${figure(best?.rms ?? 0, 3)}${unit}`;
     const head = best ? `Best: ${near}, ${inWords(best)}. ` : "";
+    // How the search went stands behind the chip that says how sure it is.
+    const [short, ...rest] = answer.said.split("\n");
+    const isSaid = answer.sure !== undefined;
+    this.sure.show(answer.sure ?? null, isSaid ? [short, ...rest].join("\n") : "");
     this.desk.changed(answer.doing === "done");
-    this.voice.answered(answer, head + answer.said);
-    this.said.tell(head + answer.said, answer.doing === "searching" ? answer.progress : undefined);
-  }
-
-  /** An answer with the linkages that a step back has brought back, unless it has better ones. */
-  private asRestored(answer: Answer): Answer {
-    const before = this.restored;
-    if (!before || before.version !== this.version) return answer;
-    const [was, is] = [before.answer.candidates[0], answer.candidates[0]];
-    if (answer.doing === "done" && (!was || (is && is.rms < BETTER * was.rms))) {
-      this.restored = null;
-      return answer;
-    }
-    return { ...answer, candidates: before.answer.candidates };
-  }
-
-  /** The candidates that are shown: of many through nine points those that were chosen. */
-  private candidates() {
-    return this.nine.filtered(this.answer?.candidates ?? []);
-  }
-
-  /** What the strip shows: candidates for what stands, then what is pinned, each with its own task. */
-  private all(): Solution[] {
-    return [...this.candidates().map((shown) => ({ shown, task: this.task })), ...this.pinned];
+    this.build.later();
+    const status = head + (isSaid ? short : answer.said);
+    this.voice.answered(answer, status);
+    this.said.tell(status, answer.doing === "searching" ? answer.progress : undefined);
   }
 
   private place() {
-    return placeOf(this.choice, this.candidates(), this.pinned);
+    return this.byHand.shown ? this.moving.length - 1 : this.showing.place();
   }
 
+  /** The linkage that the board shows: the one in the hand, or the chosen one. */
   private chosen(): Solution | null {
-    return this.all()[this.place()] ?? null;
+    return this.byHand.solution() ?? this.showing.chosen(this.task);
+  }
+
+  /** Its number in the list, for the names of files. */
+  private rank(): string {
+    if (this.byHand.shown) return "by-hand";
+    const [place, found] = [this.showing.place(), this.showing.candidates().length];
+    return place < found ? String(place + 1) : `pinned-${place - found + 1}`;
   }
 
   private draw() {
-    const all = this.all();
-    const found = all.length - this.pinned.length;
-    this.moving = all.map(({ shown, task }) => movingOf(shown, task.points));
+    const all = this.showing.all(this.task);
+    const inHand = this.byHand.solution();
+    this.moving = [...all, ...(inHand ? [inHand] : [])].map(({ shown, task }) => movingOf(shown, task.points));
     this.drawBoard();
-    this.strip.show(
-      this.moving,
-      all.map(({ task }) => task),
-      found,
-      this.place(),
-    );
+    const cards = this.moving.slice(0, all.length);
+    this.strip.show(cards, all, this.showing.candidates().length, inHand ? -1 : this.showing.place());
     byId("nothing").hidden = all.length > 0;
-    this.helps.show(this.answer?.relaxations ?? [], this.task.unit);
+    const { answer } = this.showing;
+    this.helps.show(answer?.relaxations ?? [], this.task.unit, tasks.nearestInstead(this.task, answer));
     this.showSteps();
     byId<HTMLButtonElement>("linkage-file").disabled = !this.chosen();
-    this.strip.pose(this.part);
+    this.strip.pose(this.clock.part);
   }
 
   /** The board alone: the target as it stands, the linkage that was last answered. */
   private drawBoard() {
     const shown = this.moving[this.place()] ?? null;
-    const pins = this.moving.slice(this.moving.length - this.pinned.length);
+    const { pinned } = this.showing;
+    const found = this.showing.candidates().length;
+    const pins = pinned.map(({ colour = 0 }, i) => ({ moving: this.moving[found + i], colour }));
+    const another = shown !== null && this.onBoard !== null && !isSame(shown.shown, this.onBoard);
+    this.onBoard = shown?.shown ?? this.onBoard;
     this.board.show(
       this.task,
       shown,
-      pins.filter((one) => one !== shown),
+      pins.filter(({ moving }) => moving && moving !== shown),
+      another,
     );
-    this.board.pose(this.part);
+    this.board.offer(this.byHand.shown ? null : this.showing.offer());
+  }
+
+  private pose(part: number) {
+    this.board.pose(part);
+    this.strip.pose(part);
+    this.gallery.pose(part);
   }
 
   private showSteps() {
@@ -392,37 +469,39 @@ class Page {
   }
 
   private choose(index: number) {
-    const one = this.all()[index];
-    this.choice = index < this.candidates().length ? { candidate: one.shown } : { pin: one };
+    if (this.byHand.shown) {
+      this.note();
+      this.byHand.take(null);
+    }
+    this.showing.choose(index, this.task);
     this.draw();
     this.desk.chose();
+    this.build.later();
   }
 
   /** Keeps a linkage to compare others with. */
   private keepShown(one: Solution) {
-    if (this.pinned.length >= MOST_PINNED)
-      return this.desk.say(`${MOST_PINNED} are pinned already: unpin one of them first.`);
-    this.pinned = [...this.pinned, one];
+    if (!this.showing.pin(one)) return this.desk.say(`${MOST_PINNED} are pinned already: unpin one of them first.`);
     this.keep();
     this.draw();
   }
 
   /** Pins a candidate to compare others with it, or lets a pinned one go. */
   private pin(index: number) {
-    const one = this.all()[index];
-    if (index < this.candidates().length) {
+    const one = this.showing.all(this.task)[index];
+    if (index < this.showing.candidates().length) {
       this.guide.done("pin");
       return this.keepShown(one);
     }
-    this.pinned = this.pinned.filter((pin) => pin !== one);
-    if (this.choice && "pin" in this.choice && this.choice.pin === one) this.choice = null;
+    this.showing.unpin(one);
     this.keep();
     this.draw();
   }
 
   private keep() {
-    const { task, pinned, begunWith, hints } = this;
-    remember({ task, pinned, begunWith, hints, view: this.board.looking });
+    const { task, begunWith, hints } = this;
+    const { isWalker } = this.board;
+    remember({ task, pinned: this.showing.pinned, begunWith, hints, view: this.board.looking, isWalker });
   }
 
   private say(text: string) {
@@ -444,25 +523,19 @@ class Page {
       this.written = text.value;
     }
     byId("point-count").textContent = String(task.points.length);
+    byId("point-word").textContent = task.points.length === 1 ? "point" : "points";
   }
 
   private listen() {
     const click = (id: string, act: () => void) => byId(id).addEventListener("click", act);
-    for (const tool of ["draw", "points", "pivots_in", "footprint_in", "photo-move", "photo-scale"] as Tool[]) {
-      // Pressed again, a tool is laid down.
-      click(`tool-${tool}`, () => this.use(this.board.tool === tool ? "draw" : tool));
-    }
+    // Pressed again, a tool is laid down.
+    for (const tool of TOOLS) click(`tool-${tool}`, () => this.use(this.board.tool === tool ? "draw" : tool));
     click("undo", () => this.back("undo"));
     click("redo", () => this.back("redo"));
     click("clear", () => {
-      this.replace(withPoints(this.task, [], false), { fresh: true });
+      this.replace(tasks.withPoints(this.task, [], false), { fresh: true });
+      this.walk(false);
       this.board.open(this.task.unit);
-    });
-    const choice = byId<HTMLSelectElement>("example-choice");
-    choice.replaceChildren(new Option("choose one", ""), ...EXAMPLES.map(([name], i) => new Option(name, String(i))));
-    click("example", () => {
-      if (choice.value === "") return this.desk.say("Choose first which example.");
-      return this.open(EXAMPLES[Number(choice.value)][1]);
     });
     listenToRequirements(
       () => this.task,
@@ -478,11 +551,13 @@ class Page {
     click("fit", () => this.board.fit());
     click("nearer", () => this.board.zoom(1.25));
     click("farther", () => this.board.zoom(0.8));
-    click("play", () => {
-      this.playing = !this.playing;
-      this.showPlaying();
+    click("play", () => this.play(!this.clock.playing));
+    input("walker").addEventListener("change", () => {
+      this.note();
+      this.walk(input("walker").checked);
+      this.keep();
     });
-    this.showPlaying();
+    byId("board").addEventListener("pointerdown", () => this.gallery.open(false));
     click("hide-hints", () => {
       this.hints = false;
       changing(
@@ -496,13 +571,13 @@ class Page {
     });
     click("problem-file", () => void this.save(this.task.name, api.problemOf(this.task)));
     click("linkage-file", () => {
-      const [chosen, place, found] = [this.chosen(), this.place(), this.candidates().length];
+      const chosen = this.chosen();
       if (!chosen) return;
-      const name = `${chosen.task.name}-${place < found ? place + 1 : `pinned-${place - found + 1}`}`.slice(-64);
+      const name = `${chosen.task.name}-${this.rank()}`.slice(-64);
       void this.save(name, api.linkageOf(name, chosen));
     });
     input("closed").addEventListener("change", () =>
-      this.replace(settled({ ...this.task, closed: input("closed").checked })),
+      this.replace(tasks.settled({ ...this.task, closed: input("closed").checked })),
     );
     click("take-coordinates", () => void this.takeText(this.coordinates.value, ""));
     document.addEventListener("keydown", (event) => {
@@ -514,19 +589,28 @@ class Page {
     });
   }
 
-  private showPlaying() {
-    byId("play").textContent = this.playing ? "Pause" : "Play";
+  private play(on: boolean) {
+    this.clock.play(on);
+    byId("play").textContent = on ? "Pause" : "Play";
+  }
+
+  /** Shows the ground and a second leg, or takes them away. */
+  private walk(on: boolean) {
+    this.board.isWalker = on;
+    input("walker").checked = on;
+    this.board.redraw();
   }
 
   private now(): State {
-    const { task, answer, choice } = this;
-    const candidates = answer?.candidates ?? [];
-    const chosen =
-      choice &&
-      ("pin" in choice
-        ? { pin: this.pinned.indexOf(choice.pin) }
-        : { candidate: candidates.indexOf(choice.candidate) });
-    return { task, photo: this.underlay.placed, view: this.board.looking, answer, chosen };
+    return {
+      task: this.task,
+      photo: this.underlay.placed,
+      view: this.board.looking,
+      answer: this.showing.answer,
+      chosen: this.showing.chosenPlace(),
+      byHand: this.byHand.shown,
+      isWalker: this.board.isWalker,
+    };
   }
 
   /** Notes what stands before a change, so that it can be undone. */
@@ -543,15 +627,11 @@ class Page {
   private restore(then: State) {
     if (then.photo) this.underlay.place(then.photo);
     this.board.look(then.view);
+    this.walk(then.isWalker);
     this.put(then.task, {});
     const { answer, chosen } = then;
-    if (!answer || answer.candidates.length === 0) return;
-    this.answer = answer;
-    this.restored = { version: this.version, answer };
-    this.nine.hear(answer);
-    const candidate = chosen && "candidate" in chosen ? answer.candidates[chosen.candidate] : undefined;
-    const pin = chosen && "pin" in chosen ? this.pinned[chosen.pin] : undefined;
-    this.choice = candidate ? { candidate } : pin ? { pin } : null;
+    if (answer && answer.candidates.length > 0) this.showing.restore(answer, this.version, chosen);
+    if (then.byHand || this.byHand.shown) this.byHand.take(then.byHand);
     this.draw();
   }
 

@@ -12,6 +12,7 @@ export interface Remembered {
   begunWith: string;
   hints: boolean;
   view?: View;
+  isWalker?: boolean;
 }
 
 /** What this tab has kept under a name; of a new tab what the latest has. */

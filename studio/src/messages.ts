@@ -36,14 +36,16 @@ export interface Ask {
   expect?: { of: string; answer: { best_known_sum_sq?: number; published?: unknown[]; exact?: unknown } };
   seed: number;
   moving?: boolean;
+  held?: number;
   fresh?: boolean;
 }
 
 /** What of an Ask is the user's: the rest is the connection's. */
-export type Task = Omit<Ask, "version" | "moving" | "fresh">;
+export type Task = Omit<Ask, "version" | "moving" | "held" | "fresh">;
 
 export interface Shown {
   rank: number;
+  number?: number;
   linkage: { A: Point; B: Point; a: number; b: number; c: number; d: number; e: number; t1: number; t2: number };
   drive: { kind: "turn" | "rock" | "through" | "none"; middle_deg: number; half_width_deg: number; t1: number };
   crank_deg: number[];
@@ -64,6 +66,8 @@ export interface Shown {
 export interface Solution {
   shown: Shown;
   task: Task;
+  /** Of a pinned one: the number of its colour. */
+  colour?: number;
 }
 
 /** The linkages through nine points, counted. */
@@ -95,6 +99,7 @@ export interface Answer {
   version: number;
   doing: "following" | "searching" | "done" | "refused";
   said: string;
+  sure?: "sure" | "fairly" | "not";
   progress?: number;
   candidates: Shown[];
   nine?: Counted;

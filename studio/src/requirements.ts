@@ -2,14 +2,17 @@
 
 import { KINDS } from "./boxes";
 import type { Box, Task } from "./messages";
+import { nameFault } from "./names";
 import {
   canBeExact,
   EXACT,
+  extentTimes,
   isExact,
   longestTimes,
   pivotsBelow,
   settled,
   spaceAround,
+  withExtent,
   withLongest,
   withTiming,
   withTolerances,
@@ -20,8 +23,14 @@ const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) 
 const input = (id: string) => byId<HTMLInputElement>(id);
 const select = (id: string) => byId<HTMLSelectElement>(id);
 
-/** From so many sizes of the path on the slider of the longest link stands for any. */
-const ANY_LONGEST = 10;
+/** From so many sizes of the path on a slider of a size stands for any. */
+const ANY_SIZE = 10;
+
+/** The sliders of sizes, as multiples of the path. */
+const SIZES = [
+  { id: "longest", of: longestTimes, set: withLongest, any: "of any length", most: "no longer than" },
+  { id: "extent", of: extentTimes, set: withExtent, any: "of any size", most: "as it moves no larger than" },
+] as const;
 
 const TYPES: Record<string, string[]> = {
   any: [],
@@ -74,7 +83,14 @@ export function listenToRequirements(now: () => Task, change: (task: Task) => vo
   on("over", () => ({ ...now(), transmission_over: (select("over").value || undefined) as Task["transmission_over"] }));
   on("direction", () => ({ ...now(), direction: select("direction").value as Task["direction"] }));
   on("unit", () => ({ ...now(), unit: select("unit").value || undefined }));
-  on("name", () => (input("name").value.trim() === "" ? null : { ...now(), name: input("name").value.trim() }));
+  on("name", () => {
+    const name = input("name").value.trim();
+    const fault = nameFault(name);
+    // A name that cannot be used is marked, and the problem keeps the one that it has: its search goes on.
+    input("name").setAttribute("aria-invalid", String(fault !== null));
+    byId("name-fault").textContent = fault === null ? "" : `${fault}. It is still called ${now().name}.`;
+    return fault === null ? { ...now(), name } : null;
+  });
   on("objective", () => ({ ...now(), objective: select("objective").value as Task["objective"] }));
   on("timing", () => settled(withTiming(now(), select("timing").value as "none")));
   on("each-tolerance", () => withTolerances(now(), input("each-tolerance").checked));
@@ -87,17 +103,19 @@ export function listenToRequirements(now: () => Task, change: (task: Task) => vo
     });
   }
   on("type", () => ({ ...now(), types: TYPES[select("type").value] ?? now().types }));
-  const longest = input("longest");
-  const times = () => (longest.valueAsNumber >= ANY_LONGEST ? null : longest.valueAsNumber);
-  longest.addEventListener("input", () => tellLongest(times()));
-  on("longest", () => withLongest(now(), times()));
+  for (const size of SIZES) {
+    const slider = input(size.id);
+    const times = () => (slider.valueAsNumber >= ANY_SIZE ? null : slider.valueAsNumber);
+    slider.addEventListener("input", () => tellSize(size, times()));
+    on(size.id, () => size.set(now(), times()));
+  }
   on("exact", () => ({ ...now(), method: input("exact").checked ? EXACT : undefined }));
 }
 
-function tellLongest(times: number | null) {
-  const text = times === null ? "of any length" : `no longer than ${Number(times.toPrecision(3))} × the path`;
-  byId("longest-said").textContent = text;
-  input("longest").setAttribute("aria-valuetext", text);
+function tellSize({ id, any, most }: (typeof SIZES)[number], times: number | null) {
+  const text = times === null ? any : `${most} ${Number(times.toPrecision(3))} × the path`;
+  byId(`${id}-said`).textContent = text;
+  input(id).setAttribute("aria-valuetext", text);
 }
 
 /** Brings the controls to what the task says. */
@@ -123,9 +141,11 @@ export function fillRequirements(task: Task) {
   const key = Object.keys(TYPES).find((name) => TYPES[name].join() === task.types.join());
   select("type").value = key ?? "as-given";
   byId("as-given").hidden = key !== undefined;
-  const longest = longestTimes(task);
-  set("longest", longest ?? ANY_LONGEST);
-  tellLongest(longest);
+  for (const size of SIZES) {
+    const times = size.of(task);
+    set(size.id, times ?? ANY_SIZE);
+    tellSize(size, times);
+  }
   input("tolerance").disabled = task.tolerances !== undefined;
   input("tolerance").placeholder = task.tolerances ? "in the table of points" : "any";
   input("each-tolerance").checked = task.tolerances !== undefined;

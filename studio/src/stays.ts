@@ -11,6 +11,7 @@ const KEYS: [string, (task: Task) => unknown][] = [
   ["require.transmission_deg_min", (task) => task.transmission_deg_min],
   ["require.link_ratio_max", (task) => task.link_ratio_max],
   ["require.longest_max", (task) => task.kept?.["require.longest_max"]],
+  ["require.extent_max", (task) => task.kept?.["require.extent_max"]],
   ["require.pivots_in", (task) => task.pivots_in],
   ["require.footprint_in", (task) => task.footprint_in],
   ["require.direction", (task) => task.direction && task.direction !== "any"],

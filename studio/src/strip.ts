@@ -1,9 +1,10 @@
 // The strip of candidates: small pictures that move, with their figures.
 
-import { element, figure, setAll, shape } from "../../src/report/html/player/svg.mjs";
-import { Figure, type Moving } from "./figures";
+import { element, figure, setAll } from "../../src/report/html/player/svg.mjs";
+import type { Moving } from "./figures";
 import { changing, setChildren } from "./focus";
-import type { Point, Shown, Task } from "./messages";
+import type { Shown, Solution, Task } from "./messages";
+import { Picture } from "./picture";
 import { longestMax, sizeOf } from "./task";
 import { type Graded, limitedBy, marks, nearnessInWords, SIGNS, sizeInWords, transmissionInWords } from "./words";
 
@@ -47,24 +48,33 @@ export function nearness(shown: Shown, unit: string | undefined): string {
   return `exactly through the points${shown.certified_within === undefined ? "" : ", proved"}; ${shown.ability}`;
 }
 
+/** What a card shows. */
+interface Entry {
+  moving: Moving;
+  /** The target that it was found for. */
+  task: Task;
+  name: string;
+  marks: string[];
+  chosen: boolean;
+  /** Of one that is pinned. */
+  colour?: number;
+}
+
 /** One card of the strip. */
 class Card {
   /** Whether it is in sight. */
   seen = false;
-  private drawn: unknown[] = [];
   private moving: Moving | null = null;
   private task: Task | null = null;
   private key = "";
-  private picture = new Figure(0.55);
-  private svg = shape("svg", { class: "stage", viewBox: `0 0 ${W} ${H}`, width: W, height: H, "aria-hidden": "true" });
-  private target = shape("path", { class: "target-line" });
+  private picture = new Picture(W, H);
   private title = element("strong");
   private marks = element("span", { class: "tags" });
   private quality = element("span", { class: "quality" });
   private figures = element("span", { class: "figures" });
   private verdict = element("span", { class: "verdict" });
   readonly pick = element("button", { type: "button", class: "pick" }, [
-    this.svg,
+    this.picture.svg,
     this.title,
     this.marks,
     this.quality,
@@ -72,26 +82,20 @@ class Card {
     this.verdict,
   ]);
   readonly pin = element("button", { type: "button", class: "pin-button" });
-  readonly node = element("li", {}, [this.pick, this.pin]);
+  readonly node = element("li", { class: "card" }, [this.pick, this.pin]);
 
   constructor(onPick: () => void, onPin: () => void) {
-    this.svg.append(this.target, this.picture.group);
     this.pick.addEventListener("click", onPick);
     this.pin.addEventListener("click", onPin);
   }
 
-  show(
-    moving: Moving,
-    { name, marks }: { name: string; marks: string[] },
-    task: Task,
-    chosen: boolean,
-    pinned: boolean,
-    part: number,
-    all: boolean,
-  ) {
+  /** Shows a linkage; `part`: where in its motion, drawn even out of sight; null: once it is in sight. */
+  show({ moving, task, name, marks, chosen, colour }: Entry, part: number | null) {
     const { shown } = moving;
     Object.assign(this, { moving, task });
-    if (this.seen || all) this.draw(part);
+    if (this.seen || part !== null) this.draw(part ?? 0);
+    const pinned = colour !== undefined;
+    setAll(this.node, { class: pinned ? `card pin-${colour}` : "card" });
     const { unit } = task;
     const texts = [name, `${nearness(shown, unit)}; ${shown.type}`, inWords(shown)];
     const size = sizeOf(task.points);
@@ -125,27 +129,7 @@ class Card {
   /** Draws what is to be shown, unless it is drawn already. */
   draw(part: number) {
     const { moving, task } = this;
-    if (!moving || !task) return;
-    const { points, closed } = task;
-    const now = [moving, points, closed];
-    if (now.every((one, i) => one === this.drawn[i])) return;
-    this.drawn = now;
-    const box = moving.box();
-    const [w, h] = [box[2] - box[0] || 1, box[3] - box[1] || 1];
-    const scale = Math.min((W - 16) / w, (H - 16) / h);
-    const toward = ([x, y]: Point): Point => [
-      W / 2 + (x - (box[0] + box[2]) / 2) * scale,
-      H / 2 - (y - (box[1] + box[3]) / 2) * scale,
-    ];
-    const line = points.map(toward);
-    setAll(this.target, {
-      d:
-        line.length === 0
-          ? ""
-          : `M${line.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L")}${closed ? "Z" : ""}`,
-    });
-    this.picture.show(moving, toward);
-    this.pose(part);
+    if (moving && task) this.picture.show(moving, task.points, task.closed, part);
   }
 
   pose(part: number) {
@@ -195,7 +179,7 @@ export class Strip {
   }
 
   /** Shows candidates, then what is pinned, each over the target that it was found for. */
-  show(all: Moving[], tasks: Task[], found: number, chosen: number) {
+  show(all: Moving[], solutions: Solution[], found: number, chosen: number) {
     const before = this.shown;
     this.found = found;
     this.shown = all.map((_, i) => (i < found ? this.card(0, i) : this.card(1, i - found)));
@@ -209,15 +193,9 @@ export class Strip {
       found > MANY ? [] : marks(candidates.map((moving) => ({ shown: moving.shown, extent: extent(moving) })));
     all.forEach((moving, i) => {
       const name = i < found ? `Linkage ${i + 1}` : `Pinned ${i - found + 1}`;
-      this.shown[i].show(
-        moving,
-        { name, marks: marked[i] ?? [] },
-        tasks[i],
-        i === chosen,
-        i >= found,
-        this.part,
-        all.length <= MANY,
-      );
+      const colour = i < found ? undefined : (solutions[i].colour ?? 0);
+      const entry = { moving, task: solutions[i].task, name, marks: marked[i] ?? [], chosen: i === chosen, colour };
+      this.shown[i].show(entry, all.length <= MANY ? this.part : null);
     });
     if (this.shown.length !== before.length || this.shown.some((card, i) => card !== before[i])) {
       const heading = this.list.parentElement?.querySelector("h2") ?? this.list;

@@ -1,6 +1,6 @@
 // What is asked, kept in step with itself: lists beside the points are as long as the points are many.
 
-import type { Ask, Box, Point, Task } from "./messages";
+import type { Answer, Ask, Box, Point, Task } from "./messages";
 
 /** So many points have all their linkages told. */
 export const NINE = 9;
@@ -66,9 +66,23 @@ export function withLongest(task: Task, times: number | null): Task {
   return { ...task, kept: { ...kept, [LONGEST]: value } };
 }
 
+/** The limit on the extent of the whole linkage in sizes of the path; null: any. */
+export function extentTimes(task: Task): number | null {
+  const given = Number(task.kept?.[EXTENT]);
+  return Number.isFinite(given) ? given / sizeOf(task.points) : null;
+}
+
+/** The whole linkage in motion no larger than so many sizes of the path; null: any. */
+export function withExtent(task: Task, times: number | null): Task {
+  const { [EXTENT]: _, ...kept } = task.kept ?? {};
+  const rest = Object.keys(kept).length > 0 ? kept : undefined;
+  if (times === null) return { ...task, kept: rest };
+  return { ...task, kept: { ...kept, [EXTENT]: String(Number((times * sizeOf(task.points)).toPrecision(6))) } };
+}
+
 /** What a problem file says beyond the controls of the page. */
 export const withoutControls = (kept: Record<string, string> | undefined): [string, string][] =>
-  Object.entries(kept ?? {}).filter(([key]) => key !== LONGEST);
+  Object.entries(kept ?? {}).filter(([key]) => key !== LONGEST && key !== EXTENT);
 
 /** The same problem with all lengths so many times as long. */
 export function withLengthsTimes(task: Task, by: number): Task {
@@ -91,7 +105,9 @@ export function withLengthsTimes(task: Task, by: number): Task {
 /** What is asked of the linkage, of a path that is drawn anew: what belonged to the points of another is gone. */
 export function drawnAnew(task: Task, points: Point[], closed: boolean): Task {
   const fresh = drawnAlone(task, points, closed);
-  return task.points.length > 2 && task.kept?.[LONGEST] ? withLongest(fresh, longestTimes(task)) : fresh;
+  if (task.points.length <= 2) return fresh;
+  const bounded = task.kept?.[EXTENT] ? withExtent(fresh, extentTimes(task)) : fresh;
+  return task.kept?.[LONGEST] ? withLongest(bounded, longestTimes(task)) : bounded;
 }
 
 const drawnAlone = (task: Task, points: Point[], closed: boolean): Task => ({
@@ -244,8 +260,20 @@ export function withoutStale(before: Task, task: Task): Task {
   return expect && expect.of === before.expect?.of && asked(task) !== asked(before) ? rest : task;
 }
 
+/** Where no linkage through nine points does all that is asked: the nearest one instead, within a tolerance. */
+export function nearestInstead(task: Task, answer: Answer | null): { task: Task; said: string } | null {
+  const isFor = isExact(task) && answer?.doing === "done" && !answer.candidates.some((one) => one.accepted);
+  if (!isFor) return null;
+  const tolerance = task.tolerance ?? usualTolerance(task);
+  const within = `${tolerance}${task.unit ? ` ${task.unit}` : ""}`;
+  return {
+    task: { ...task, method: undefined, tolerance },
+    said: `the nearest linkage within ${within} instead of exactly through the points`,
+  };
+}
+
 /** The task of an Ask: the rest is the connection's. */
 export function taskOf(ask: Ask): Task {
-  const { version: _v, moving: _m, fresh: _f, ...task } = ask;
+  const { version: _v, moving: _m, held: _h, fresh: _f, ...task } = ask;
   return task;
 }

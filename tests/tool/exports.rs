@@ -140,6 +140,37 @@ fn svg_dimensions_are_true_millimetres() {
 }
 
 #[test]
+fn plates_on_a_sheet_lie_within_it_and_apart() {
+    for subject in subjects() {
+        let free = [("hole_mm", "0.5"), ("margin_mm", "1"), ("gap_mm", "2")];
+        let size = |svg: &str| {
+            let document = roxmltree::Document::parse(svg).expect("XML");
+            let side = |name| {
+                let text = document
+                    .root_element()
+                    .attribute(name)
+                    .expect("a size")
+                    .trim_end_matches("mm")
+                    .to_owned();
+                text.parse::<f64>().expect("a number") - 4.0
+            };
+            (side("width"), side("height"))
+        };
+        let (width, height) = size(&text(&subject, Format::SvgPlates, &free));
+        // Two columns: half as high, and no wider than two of the widest.
+        let sheet = format!("{}x{}", 2.0 * width + 4.0, 0.75 * height);
+        let mut set = free.to_vec();
+        set.push(("sheet_mm", sheet.as_str()));
+        let (wide, high) = size(&text(&subject, Format::SvgPlates, &set));
+        assert!(wide <= 2.0 * width + 4.0 && high <= 0.75 * height && wide > width, "{wide} {high}");
+        set[3].1 = "3x2";
+        let settings = settings(Format::SvgPlates, &set);
+        let refused = export(&subject, Format::SvgPlates, &settings).expect_err("too small");
+        assert!(refused.message.contains("3 x 2 mm") && refused.help.contains("would do"), "{refused}");
+    }
+}
+
+#[test]
 fn svg_plates_have_the_outline_of_the_plates() {
     for subject in subjects() {
         let set = [("hole_mm", "0.5"), ("margin_mm", "1"), ("kerf_mm", "0.1"), ("gap_mm", "2")];

@@ -41,6 +41,10 @@ impl Studio {
 
     /// The whole answer to a request with these headers.
     pub(crate) fn asks(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Reply {
+        Reply(String::from_utf8_lossy(&self.bytes(method, path, headers, body)).into_owned())
+    }
+
+    fn bytes(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Vec<u8> {
         let mut text = format!("{method} {path} HTTP/1.1\r\nConnection: close\r\n");
         if !headers.iter().any(|(name, _)| *name == "Host") {
             text += &format!("Host: {}\r\n", self.host());
@@ -61,7 +65,7 @@ impl Studio {
             Err(e) if e.kind() == ErrorKind::ConnectionReset => {}
             Err(e) => panic!("no answer: {e}"),
         }
-        Reply(String::from_utf8_lossy(&answer).into_owned())
+        answer
     }
 
     /// Brings the token; the cookie.
@@ -82,6 +86,15 @@ impl Studio {
     pub(crate) fn posts(&self, cookie: &str, path: &str, body: &[u8]) -> Reply {
         let origin = self.origin();
         self.asks("POST", path, &[("Cookie", cookie), ("Origin", &origin)], body)
+    }
+
+    /// The body of the answer, which is no text.
+    pub(crate) fn posts_for_bytes(&self, cookie: &str, path: &str, body: &[u8]) -> Vec<u8> {
+        let origin = self.origin();
+        let answer = self.bytes("POST", path, &[("Cookie", cookie), ("Origin", &origin)], body);
+        let end = answer.windows(4).position(|four| four == b"\r\n\r\n").expect("a head");
+        assert!(answer.starts_with(b"HTTP/1.1 200"), "{}", String::from_utf8_lossy(&answer[..end]));
+        answer[end + 4..].to_vec()
     }
 
     /// A tab: its WebSocket, upgraded.

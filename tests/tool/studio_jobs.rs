@@ -4,6 +4,7 @@ use crate::studio::{Reply, Studio, egg};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::{Cursor, Read};
 use std::path::Path;
 use std::process::Command;
 use std::thread::sleep;
@@ -160,6 +161,34 @@ fn a_job_saves_the_bytes_of_synth_and_all_that_is_told_of_it_is_what_the_command
         let ours = guest.posts("/export", &json!({"of": of, "format": format}));
         assert_eq!(body(&ours).as_bytes(), studios[file], "{format}");
     }
+    // What a maker takes: the layers, and everything in one archive under its own names.
+    let sizes = json!({"hole_mm": "3", "margin_mm": "4", "kerf_mm": "0.1", "sheet_mm": "2000x2000"});
+    let layers = guest.posts("/export", &json!({"of": of, "format": "layers", "set": {"hole_mm": "3"}}));
+    let theirs = linkwright(folder.path(), &["build", "results/an egg:1", "--hole", "3", "--margin", "3"]);
+    assert!(theirs.ends_with(body(&layers)) && body(&layers).contains("from below"), "{}", layers.0);
+    let asked = json!({"of": of, "format": "archive", "set": sizes, "name": "egg-1"});
+    let archive = studio.posts_for_bytes(&guest.cookie, "/export", asked.to_string().as_bytes());
+    let mut archive = zip::ZipArchive::new(Cursor::new(archive)).expect("an archive");
+    let names: Vec<String> = archive.file_names().map(str::to_owned).collect();
+    assert!(names.iter().all(|name| name.starts_with("egg-1-")) && names.len() == 11, "{names:?}");
+    let mut plates = String::new();
+    archive.by_name("egg-1-plates.dxf").expect("plates").read_to_string(&mut plates).expect("a text");
+    let set = ["hole_mm=3", "margin_mm=4", "kerf_mm=0.1", "sheet_mm=2000x2000"];
+    let mut arguments = vec!["export", "results/an egg:1", "--format", "dxf-plates"];
+    arguments.extend(set.iter().flat_map(|one| ["--set", one]));
+    assert_eq!(plates, linkwright(folder.path(), &arguments));
+    for (asked, says) in [
+        (json!({"of": of, "format": "archive", "name": "../x"}), "path"),
+        (json!({"of": of, "format": "archive", "set": {"hole_mm": "900"}}), "run into each other"),
+        (json!({"of": of, "format": "archive", "set": {"sheet_mm": "1x1"}}), "do not fit"),
+        (
+            json!({"of": of, "format": "layers", "set": {"crank_deg": "1", "nothing": "2"}}),
+            "no setting `nothing`",
+        ),
+    ] {
+        let refused = guest.posts("/export", &asked);
+        assert!(refused.status() == 422 && body(&refused).contains(says), "{}", refused.0);
+    }
     // A comparison too.
     let two = json!({"of": [of, {"job": {"name": "again", "rank": 1}}], "sort": ["transmission"]});
     let ours: Value = value(&guest.posts("/compare", &two));
@@ -183,6 +212,16 @@ fn a_job_saves_the_bytes_of_synth_and_all_that_is_told_of_it_is_what_the_command
     for key in ["rms", "max", "type", "transmission_deg", "link_ratio", "accepted", "unmet"] {
         assert_eq!(by_hand["shown"][key], shown[key], "{key}");
     }
+    // Changed by hand it is judged over the same target; what cannot be assembled is refused.
+    let judged = |linkage: &Value| guest.posts("/judged", &json!({"ask": ask, "linkage": linkage}));
+    let same = value(&judged(&shown["linkage"]));
+    let rms = |shown: &Value| shown["rms"].as_f64().expect("a number");
+    assert!(rms(&same) <= rms(shown) * (1.0 + 1e-9) && same["type"] == shown["type"], "{same}");
+    let mut longer = shown["linkage"].clone();
+    longer["d"] = json!(1.02 * longer["d"].as_f64().expect("a length"));
+    assert!(rms(&value(&judged(&longer))) > rms(shown));
+    longer["a"] = json!(1e4);
+    assert_eq!(judged(&longer).status(), 422);
     // What its limit costs is told for it as well.
     let costs =
         |details: &Value| details["words"].as_str().is_some_and(|words| words.contains("class=\"cost\""));
@@ -336,6 +375,51 @@ fn a_figure_that_was_changed_by_hand_is_not_shown() {
     for (path, ask) in &asks {
         let refused = guest.posts(path, ask);
         assert!(refused.status() == 422 && body(&refused).contains("not true"), "{path}: {}", refused.0);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_pipe_in_the_place_of_a_record_holds_up_nobody() {
+    let folder = TempDir::new().expect("a folder");
+    let pipe = |name: &str, file: &str| {
+        let place = folder.path().join(name);
+        fs::create_dir_all(&place).expect("a folder");
+        let mode = rustix::fs::Mode::from_raw_mode(0o600);
+        rustix::fs::mkfifoat(rustix::fs::CWD, place.join(file), mode).expect("a pipe");
+    };
+    pipe("record", "record.json");
+    pipe("checkpoint", "checkpoint.json");
+    pipe("timing", "timing.json");
+    let studio = studio(folder.path(), "18447");
+    let guest = Guest::of(&studio);
+    let list = value(&guest.gets("/jobs"));
+    let state = |name: &str| {
+        let jobs = list["jobs"].as_array().expect("a list");
+        jobs.iter().find(|job| job["name"] == name).map(|job| job["state"].clone())
+    };
+    assert_eq!(state("record"), Some(json!("unreadable")), "{list}");
+    let of = json!({"job": {"name": "record", "rank": 1}});
+    for (path, asked) in [("/details", json!({"of": of})), ("/export", json!({"of": of, "format": "dxf"}))] {
+        let reply = guest.posts(path, &asked);
+        assert!(reply.status() == 422 && body(&reply).contains("a pipe"), "{}", reply.0);
+    }
+    for name in ["record", "checkpoint", "timing"] {
+        let mut ask = egg(1, 12, 2.0);
+        ask["name"] = json!(name);
+        let job = json!({"ask": ask, "set": {"solve.evaluations": "2000"}, "replace": true});
+        let begun = guest.posts("/jobs", &job).status();
+        assert!([201, 409, 422].contains(&begun), "{name}");
+        if begun == 201 {
+            guest.waits(name, |job| job["state"] != "running");
+        }
+    }
+    // Nor does the command line wait for one.
+    for command in ["verify", "report", "build"] {
+        let place = folder.path().join("record");
+        let done =
+            Command::new(env!("CARGO_BIN_EXE_linkwright")).arg(command).arg(place).output().expect("it runs");
+        assert_eq!(done.status.code(), Some(2), "{command}");
     }
 }
 

@@ -407,7 +407,7 @@ pub struct Suite {
 #[cfg(feature = "studio")]
 #[derive(Debug, Args)]
 pub struct Studio {
-    /// Begin with the target and the requirements of this problem file, points (CSV) or drawing (SVG)
+    /// Begin with the target and the requirements of this problem file, points (CSV), drawing (SVG) or report (HTML)
     pub problem: Option<PathBuf>,
     /// The port on 127.0.0.1, 0 for any free one [default: 8017, or a free one where that is taken]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]

@@ -6,6 +6,8 @@ use super::{Ended, interrupt, refuse, refuse_at, refuse_path, terminal};
 use crate::app::studio;
 use crate::app::studio::StudioError;
 use crate::app::studio::messages::Ask;
+use crate::app::studio::reading::of_report;
+use crate::files::input_text;
 use crate::files::problem_file::load_any;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -40,6 +42,11 @@ pub fn run(options: &Studio) -> Result<Ended, Ended> {
 
 /// Reads the problem that the page begins with.
 fn beginning(path: &Path) -> Result<Ask, Ended> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    if ending.is_some_and(|ending| ending == "html" || ending == "htm") {
+        let text = input_text::read(path).map_err(refuse_at)?;
+        return of_report(&text).map_err(|why| refuse_path(path, why));
+    }
     let problem = load_any(path, &[]).map_err(refuse_at)?;
     Ask::of(&problem).map_err(|why| refuse_path(path, why))
 }

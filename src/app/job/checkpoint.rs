@@ -10,7 +10,7 @@
 //! The digest does not cover the number of candidates and the budget ([`digest`]): a search for another number of
 //! candidates, or with a smaller budget, would not have reached this state and begins anew ([`Checkpoint::leads_to`]).
 
-use crate::app::job::folder::read_at_most;
+use crate::app::job::folder::read_file_at_most;
 use crate::app::job::run::Job;
 use crate::record::Tool;
 use crate::record::digest::{NotWritten, digest};
@@ -168,7 +168,7 @@ impl Checkpoint {
     /// [`CheckpointError`].
     pub fn read(path: &Path, job: &Job) -> Result<Option<Self>, CheckpointError> {
         let shown = path.display().to_string();
-        let bytes = match read_at_most(path, MAX_BYTES) {
+        let bytes = match read_file_at_most(path, MAX_BYTES) {
             Ok(Some(bytes)) => bytes,
             Ok(None) => return Err(CheckpointError::TooLarge(shown)),
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),

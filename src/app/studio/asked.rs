@@ -40,6 +40,9 @@ pub enum AskError {
     /// Too many points in the text of a problem.
     #[error("at most {MOST_POINTS} points: this target has more")]
     TooManyPoints,
+    /// A text is no report with a problem in it.
+    #[error("this is no report that holds its problem: `linkwright report RESULT` writes one")]
+    NoReport,
     /// Too few samples along a drawing or too many.
     #[error("{0} points along a drawing: 3 to {MOST_POINTS} can be taken")]
     Samples(usize),

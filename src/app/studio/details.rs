@@ -5,9 +5,11 @@ use super::asked::AskError;
 use super::house::House;
 use super::messages::{Ask, Shown, Target};
 use super::shelf::ShelfError;
+use super::workshop;
 use crate::app::comparison::{NotCompared, compared};
 use crate::app::inputs::{Given, Run, Which};
 use crate::app::job::run::Job;
+use crate::files::name::{self, NameError};
 use crate::judge::assess::{assess, to_raw};
 use crate::judge::verify::{Mismatch, verify};
 use crate::mechanism::{AssemblyMode, FourBar, LinkageError, NaturalCoordinates};
@@ -17,6 +19,7 @@ use crate::report::compare::{SortKey, UnknownKey};
 use crate::report::export::{Format, Refusal, Settings, Subject, UnknownFormat, export};
 use crate::report::{csv, html, svg};
 use crate::synthesis::answers::annotate;
+use crate::synthesis::nearest::nearest_positions;
 use crate::synthesis::{Budget, Context, SearchOutcome, errors_without};
 use crate::task::Problem;
 use crate::task::spec::{ProblemSpec, TaskSpec};
@@ -100,6 +103,16 @@ pub struct Details {
     pub words: String,
 }
 
+/// A linkage that was changed by hand, over the target of an edit.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JudgeAsk {
+    /// The edit.
+    pub ask: Ask,
+    /// The linkage.
+    pub linkage: NaturalCoordinates,
+}
+
 /// A linkage that is wanted as a file.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -107,11 +120,15 @@ pub struct ExportAsk {
     /// The linkage.
     pub of: Source,
     /// A format of `linkwright export`, or `html` (the report), `sheet` (its drawing), `points` (CSV along the
-    /// points).
+    /// points), `layers` (what `linkwright build` prints), `archive` (a zip of everything that it takes to build it).
     pub format: String,
-    /// Settings, as `linkwright export --set` takes them: `{"hole_mm": "4"}`.
+    /// Settings, as `linkwright export --set` takes them: `{"hole_mm": "4"}`. For an archive and for layers: of all its
+    /// files.
     #[serde(default)]
     pub set: BTreeMap<String, String>,
+    /// With which the names in an archive begin; absent: the problem's name.
+    #[serde(default)]
+    pub name: Option<String>,
 }
 
 /// Linkages that are to be compared.
@@ -185,6 +202,7 @@ impl Handed {
             "svg" => "image/svg+xml",
             "toml" => "application/toml; charset=utf-8",
             "txt" => "text/plain; charset=utf-8",
+            "zip" => "application/zip",
             _ => "application/octet-stream",
         }
     }
@@ -235,10 +253,14 @@ pub(super) enum DetailsError {
     NotAssembled,
     #[error("{0} takes no settings")]
     NoSettings(String),
-    #[error("{0}, html, sheet or points")]
+    #[error("{0}, html, sheet, points, layers or archive")]
     Format(#[from] UnknownFormat),
     #[error("{}: {}", .0.message, .0.help)]
     Export(Refusal),
+    #[error("the files cannot be packed: {0}")]
+    NotPacked(String),
+    #[error(transparent)]
+    Name(#[from] NameError),
     #[error("compare 1 to {MOST_COMPARED} linkages")]
     HowMany,
     #[error(transparent)]
@@ -310,6 +332,19 @@ impl House {
         Ok(Found { record, index: 0 })
     }
 
+    /// Judges a linkage over the target of an edit, each point met where the linkage comes nearest to it.
+    ///
+    /// # Errors
+    /// [`DetailsError`].
+    pub(super) fn judged(&self, JudgeAsk { ask, linkage }: &JudgeAsk) -> Result<Shown, DetailsError> {
+        let problem = Problem::new(ask.problem()?.spec).map_err(AskError::Task)?;
+        let linkage = FourBar::new(*linkage)?;
+        let positions = nearest_positions(&problem, &linkage);
+        let judged = positions.and_then(|(crank_deg, t1_at)| assess(&problem, &linkage, &crank_deg, &t1_at));
+        let candidate = judged.ok_or(DetailsError::NotAssembled)?;
+        Ok(Shown { rank: 1, ..Shown::from(&candidate) })
+    }
+
     /// Returns the details of a linkage.
     ///
     /// # Errors
@@ -344,6 +379,16 @@ impl House {
             "html" => Handed::saved("html", html::report_html(record, *index)),
             "sheet" => Handed::saved("svg", svg::candidate_svg(record, *index)),
             "points" => Handed::saved("csv", csv::candidate_curve_csv(found.candidate())),
+            "layers" => Handed::saved("txt", workshop::layers(record, found.candidate(), &ask.set)?),
+            "archive" => {
+                let name = ask.name.as_ref().unwrap_or(&record.problem.name);
+                name::check(name)?;
+                let problem = match &ask.of {
+                    Source::Job(_) => None,
+                    Source::Drawn(drawn) => Some(drawn.ask.problem_with_text()?.1),
+                };
+                Handed::saved("zip", workshop::archive(record, *index, (name, problem), &ask.set)?)
+            }
             other => {
                 let format: Format = other.parse()?;
                 let set: Vec<_> = ask.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();

@@ -3,7 +3,7 @@
 use super::messages::{Ask, Shown, Target};
 use crate::files::problem_file::ProblemFile;
 use crate::mechanism::Unit;
-use crate::record::{Candidate, ProblemRecord, Record};
+use crate::record::{Candidate, Record};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -201,8 +201,7 @@ impl Opened {
     pub(super) fn new(record: Record, files: Vec<String>) -> Opened {
         let candidates = record.candidates.iter().map(Shown::from).collect();
         let target = Target::from(&record.problem);
-        let ProblemRecord { name, source, unit, resolved: spec, .. } = record.problem;
-        let file = ProblemFile { name, source, unit, spec, expect: None, warnings: Vec::new() };
+        let file = ProblemFile::of(record.problem);
         let (ask, why_not) = match Ask::of(&file) {
             Ok(ask) => (Some(ask), None),
             Err(why) => (None, Some(why.to_string())),

@@ -100,6 +100,9 @@ pub struct Ask {
     /// The hand is still moving: the search waits until it rests.
     #[serde(default, skip_serializing_if = "is_default")]
     pub moving: bool,
+    /// The number of a linkage that stays among the answers while it can follow the hand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held: Option<u64>,
     /// The target has nothing to do with the one before: nothing is to follow it.
     #[serde(default, skip_serializing_if = "is_default")]
     pub fresh: bool,
@@ -141,6 +144,18 @@ pub enum Doing {
     Refused,
 }
 
+/// How sure it is that a search has missed nothing better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Sure {
+    /// As far as sampling can be, or proved.
+    Sure,
+    /// Fairly.
+    Fairly,
+    /// Not.
+    Not,
+}
+
 /// The answer to an edit. Later answers to the same edit replace earlier ones; answers that were not sent before the
 /// next came are dropped.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -151,6 +166,9 @@ pub struct Answer {
     pub doing: Doing,
     /// The same in words: what is done, how sure it is, and what prevents better answers.
     pub said: String,
+    /// Of a search that has ended with an acceptable answer: how sure it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sure: Option<Sure>,
     /// The part of the search's budget that is used, 0 to 1; most searches end before it is used up.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub progress: Option<f64>,
@@ -200,6 +218,9 @@ impl Counted {
 pub struct Shown {
     /// Its rank, from 1.
     pub rank: usize,
+    /// Its number: it keeps it while it follows the hand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub number: Option<u64>,
     /// The linkage, as in linkage files.
     pub linkage: NaturalCoordinates,
     /// Its drive over its motion.
@@ -234,6 +255,11 @@ pub struct Shown {
 }
 
 impl Shown {
+    /// Returns a candidate that follows the hand under a number.
+    pub(super) fn numbered((number, candidate): (&u64, &Candidate)) -> Shown {
+        Shown { number: Some(*number), ..Shown::from(candidate) }
+    }
+
     /// Returns a real linkage through nine points that is judged.
     pub(super) fn exact(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Shown {
         Shown {
@@ -250,6 +276,7 @@ impl From<&Candidate> for Shown {
         let missed = candidate.requirements.iter().filter(|r| !r.met).map(|r| r.name.clone());
         Shown {
             rank: candidate.rank,
+            number: None,
             linkage: candidate.linkage.natural_coordinates(),
             drive: Drive::new(&candidate.linkage, &candidate.crank_deg, &candidate.t1_at),
             crank_deg: candidate.crank_deg.clone(),
@@ -313,6 +340,8 @@ pub enum Kind {
     Svg,
     /// A problem file.
     Problem,
+    /// A report (`report.html`), or the element of it that holds its problem.
+    Report,
 }
 
 /// A text to be read.

@@ -35,6 +35,7 @@ mod server;
 mod shelf;
 mod status;
 mod tab;
+mod workshop;
 
 pub use asked::{AskError, MOST_POINTS, NotHere};
 pub use server::{Studio, StudioError};

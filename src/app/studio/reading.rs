@@ -2,8 +2,11 @@
 
 use super::asked::{AskError, MOST_POINTS, NotHere, said};
 use super::messages::{Ask, Kind, Reading, Text};
+use crate::files::problem_file::ProblemFile;
 use crate::files::svg_file::{self, SvgOptions};
 use crate::files::{name, points_file, problem_file};
+use crate::record::ProblemRecord;
+use crate::report::html::problem_json;
 use crate::task::spec::TimingSpec;
 
 /// Reads a text as the file that it would be. No other file is opened.
@@ -31,6 +34,7 @@ pub fn read(text: &Text) -> Result<Reading, AskError> {
             let ask = Ask { points: svg.points, closed: svg.closed, unit: svg.unit, ..blank() };
             (ask, false, svg.warnings)
         }
+        Kind::Report => (of_report(&text.text)?, true, Vec::new()),
         Kind::Problem => {
             let problem = problem_file::parse(file, &text.text, None, &[]).map_err(AskError::Text)?;
             let ask = Ask::of(&problem)?;
@@ -43,10 +47,23 @@ pub fn read(text: &Text) -> Result<Reading, AskError> {
     Ok(Reading { ask, whole, warnings: warnings.iter().map(said).collect() })
 }
 
+/// Returns the edit that asks the problem of a report.
+///
+/// # Errors
+/// [`AskError`] if the text is no report, or holds a problem that the studio cannot hold.
+pub fn of_report(text: &str) -> Result<Ask, AskError> {
+    let json = problem_json(text).ok_or(AskError::NoReport)?;
+    let recorded: ProblemRecord = serde_json::from_str(json).map_err(|_| AskError::NoReport)?;
+    Ok(Ask::of(&ProblemFile::of(recorded))?)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::job::run::Job;
     use crate::mechanism::Unit;
+    use crate::record::{Evaluations, Reason, Record};
+    use crate::report::html::report_html;
 
     fn text(kind: Kind, text: &str) -> Text {
         Text { kind, name: String::new(), text: text.into(), svg_id: None, samples: None, unit: None }
@@ -70,6 +87,21 @@ mod tests {
             "format = 1\nname = \"p\"\n[task.path]\npoints = [[0, 0], [1, 1], [2, 0]]\n[design]\na = 1\n";
         let Reading { ask, whole, .. } = read(&text(Kind::Problem, problem)).expect("a problem");
         assert!(whole && ask.name == "p" && ask.kept["design.a"] == "[1.0, 1.0]");
+    }
+
+    #[test]
+    fn a_report_holds_its_problem() {
+        let asked = "format = 1\nname = \"p\"\nunit = \"mm\"\n[task.path]\npoints = [[0, 0], [1, 1], [2, 0]]\n[require]\ntransmission_deg_min = 20\n";
+        let file = problem_file::parse("p", asked, None, &[]).expect("a problem");
+        let record = ProblemRecord::try_from(Job::from(file.clone())).expect("a problem's record");
+        let (used, none) = (vec!["least-squares".into()], Evaluations::default());
+        let record = Record::new(record, used, Reason::ByHand, none, Vec::new());
+        let report = report_html(&record, 0);
+        let Reading { ask, whole, .. } = read(&text(Kind::Report, &report)).expect("a report");
+        assert!(whole && ask == Ask::of(&file).expect("an edit"), "{ask:?}");
+        assert!(read(&text(Kind::Report, "<html></html>")).is_err());
+        let broken = report.replace("\"resolved\":", "\"solved\":");
+        assert!(read(&text(Kind::Report, &broken)).is_err());
     }
 
     #[test]

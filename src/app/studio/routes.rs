@@ -3,7 +3,7 @@
 //! [`openapi`](super::openapi) describes the table, [`server`](super::server) serves it. Work that may take a while is
 //! done on threads of its own, few at once.
 
-use super::details::{CompareAsk, DetailsAsk, ExportAsk, Handed};
+use super::details::{CompareAsk, DetailsAsk, ExportAsk, Handed, JudgeAsk};
 use super::guard::LIVE;
 use super::house::{Answered, House, Refused, content};
 use super::job_messages::{JobAsk, JobShown, Opened};
@@ -220,6 +220,9 @@ fn routes_of_linkages() -> Vec<Route> {
     vec![
         Route::asked("/details", UNREADABLE, |house, ask: DetailsAsk| Ok(house.details(&ask)?))
             .summed_up("Everything that the report says of a linkage."),
+        Route::asked("/judged", UNREADABLE, |house, ask: JudgeAsk| Ok(house.judged(&ask)?)).summed_up(
+            "A linkage that was changed by hand: how near it comes to the target, and what it lacks.",
+        ),
         Route::asked("/export", UNREADABLE, |house, ask: ExportAsk| Ok(house.file(&ask)?))
             .summed_up("A linkage as a file, as `linkwright export` and `linkwright report` write it."),
         Route::asked("/compare", UNREADABLE, |house, ask: CompareAsk| Ok(house.compared(&ask)?))

@@ -3,7 +3,8 @@
 
 use super::job_messages::{JobResult, JobShown, JobState};
 use crate::app::job::folder::{
-    CHECKPOINT, FolderError, MAX_RECORD_BYTES, RECORD, is_in_use, is_result_file, read_at_most, read_record,
+    CHECKPOINT, FolderError, MAX_RECORD_BYTES, RECORD, is_in_use, is_result_file, read_file_at_most,
+    read_record,
 };
 use crate::files::name;
 use crate::record::{Reason, Record};
@@ -167,5 +168,5 @@ pub(super) fn plain_file(path: &Path) -> Option<Vec<u8>> {
     if !fs::symlink_metadata(path).ok()?.is_file() {
         return None;
     }
-    read_at_most(path, MOST_BYTES).ok()?
+    read_file_at_most(path, MOST_BYTES).ok()?
 }

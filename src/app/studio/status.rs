@@ -1,5 +1,6 @@
 //! Words for a search: what it is doing, how it ended, how sure its answer is, and which requirements conflict.
 
+use super::messages::Sure;
 use crate::record::{Completeness, ExactRecord, Reason, Record};
 use crate::report::{exact, table};
 use crate::synthesis::{HitsSoFar, Progress};
@@ -21,59 +22,55 @@ pub(super) fn under_way(progress: &Progress) -> String {
 }
 
 /// Describes how a search ended and how sure its best answer is.
-pub(super) fn ended(record: &Record, hits: Option<HitsSoFar>) -> String {
+pub(super) fn ended(record: &Record, hits: Option<HitsSoFar>) -> (Option<Sure>, String) {
     let end = table::ending_sentences(record);
-    let mut said = match record.candidates.first() {
-        None => "Nothing was found.".to_owned(),
-        Some(best) if best.accepted => sure(record, hits),
+    let (level, said) = match record.candidates.first() {
+        None => (None, "Nothing was found.".to_owned()),
+        Some(best) if best.accepted => {
+            let (level, said) = sure(record, hits);
+            (Some(level), said)
+        }
         // The hits of attempts with other requirements say nothing about this one.
-        Some(_) => format!("{} {}", in_the_way(record), sure(record, None)),
+        Some(_) => (None, format!("{} {}", in_the_way(record), sure(record, None).1)),
     };
-    said.push('\n');
-    said.push_str(&end);
-    said
+    (level, format!("{said}\n{end}"))
 }
 
 /// Describes how sure it is that nothing better was missed.
-fn sure(record: &Record, hits: Option<HitsSoFar>) -> String {
+fn sure(record: &Record, hits: Option<HitsSoFar>) -> (Sure, String) {
     if let Some(exact) = record.exact.as_ref().filter(|_| record.method.used == ["continuation"]) {
         return match exact.completeness {
             Completeness::Complete => {
-                "These are all linkages through the points, by the published count.".into()
+                (Sure::Sure, "These are all linkages through the points, by the published count.".into())
             }
-            _ => "Some linkages through the points may be missing.".into(),
+            _ => (Sure::Fairly, "Some linkages through the points may be missing.".into()),
         };
     }
     let came = match hits {
         Some(HitsSoFar { came, .. }) => format!("came from {came} independent rounds of starts"),
         None => "was found again and again from different starts".into(),
     };
+    let fairly = |why: &str| (Sure::Fairly, format!("Fairly sure: {why}."));
+    let not = |why: &str| (Sure::Not, format!("Not sure: {why}."));
     match record.termination.reason {
-        Reason::Converged => format!("Sure as far as sampling can be: the best {came}."),
-        Reason::TargetReached => {
-            "Sure: the points are met to the last digit, and nothing is better than that.".into()
-        }
-        Reason::Stalled => {
-            "Fairly sure: every kind of start was tried, and the last of them gave nothing better.".into()
-        }
+        Reason::Converged => (Sure::Sure, format!("Sure as far as sampling can be: the best {came}.")),
+        Reason::TargetReached => (
+            Sure::Sure,
+            "Sure: the points are met to the last digit, and nothing is better than that.".into(),
+        ),
+        Reason::Stalled => fairly("every kind of start was tried, and the last of them gave nothing better"),
         Reason::EvaluationLimit => match hits {
             Some(HitsSoFar { came, wanted }) if came >= wanted => {
-                format!(
-                    "Fairly sure: the best came {came} times; the budget ended before the search was done."
-                )
+                fairly(&format!("the best came {came} times; the budget ended before the search was done"))
             }
             Some(HitsSoFar { came, wanted }) => {
-                format!("Not sure: the budget ended when the best had come {came} of {wanted} times.")
+                not(&format!("the budget ended when the best had come {came} of {wanted} times"))
             }
-            None => "Not sure: the budget of evaluations ended.".into(),
+            None => not("the budget of evaluations ended"),
         },
-        Reason::TimeLimit | Reason::Cancelled => "Not sure: it was cut short.".into(),
-        Reason::Snapped => {
-            "Not sure: its lengths were brought to stock sizes, nothing else was searched for.".into()
-        }
-        Reason::ByHand => {
-            "Not sure: it was fitted under the hand, no search has looked for anything better.".into()
-        }
+        Reason::TimeLimit | Reason::Cancelled => not("it was cut short"),
+        Reason::Snapped => not("its lengths were brought to stock sizes, nothing else was searched for"),
+        Reason::ByHand => not("it was fitted under the hand, no search has looked for anything better"),
     }
 }
 
@@ -135,7 +132,7 @@ mod tests {
         let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
         let record = run(&job, &context).expect("it runs").record;
         assert_eq!(record.termination.reason, Reason::EvaluationLimit);
-        let said = |came| sure(&record, Some(HitsSoFar { came, wanted: 4 }));
+        let said = |came| sure(&record, Some(HitsSoFar { came, wanted: 4 })).1;
         assert_eq!(said(3), "Not sure: the budget ended when the best had come 3 of 4 times.");
         assert_eq!(
             said(15),

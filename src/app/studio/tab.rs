@@ -5,7 +5,7 @@
 //! the one before. Every tab has at most one search, and all searches together as many threads as there are cores.
 
 use super::details::Finished;
-use super::messages::{Answer, Ask, Counted, Doing, Shown};
+use super::messages::{Answer, Ask, Counted, Doing, Shown, Sure};
 use super::status::{ended, under_way};
 use crate::app::job::run::{Context, Job, run};
 use crate::judge::assess::assess;
@@ -175,12 +175,19 @@ impl Tab {
     }
 
     fn tell(&self, doing: Doing, said: impl Into<String>, progress: Option<f64>) {
+        self.answer(doing, said, progress, None);
+    }
+
+    fn answer(&self, doing: Doing, said: impl Into<String>, progress: Option<f64>, sure: Option<Sure>) {
         let (nine, candidates) = match &self.exact {
             Some((counted, shown)) => (Some(counted.clone()), shown.clone()),
-            None => (None, self.session.candidates().iter().map(Shown::from).collect()),
+            None => {
+                let all = self.session.numbers().iter().zip(self.session.candidates());
+                (None, all.map(Shown::numbered).collect())
+            }
         };
         let (version, said, relaxations) = (self.version, said.into(), self.helps.clone());
-        let answer = Answer { version, doing, said, progress, candidates, nine, relaxations };
+        let answer = Answer { version, doing, said, sure, progress, candidates, nine, relaxations };
         if let Ok(text) = serde_json::to_string(&answer) {
             self.told.send_replace(text.into());
         }
@@ -205,6 +212,7 @@ impl Tab {
         if ask.fresh {
             self.session.clear();
         }
+        self.session.hold(ask.held);
         self.follow(&problem);
         self.asked = Some((job, problem));
         self.begin = Some(Instant::now() + if ask.moving { REST } else { Duration::ZERO });
@@ -283,14 +291,14 @@ impl Tab {
                 self.tell(Doing::Searching, SEARCHING, Some(0.0));
             }
             News::Finished(record, hits) => {
-                let said = ended(&record, hits);
+                let (sure, said) = ended(&record, hits);
                 self.searches.finished.keep(&record);
                 if let Some(exact) = record.exact.as_ref().filter(|_| self.exact.is_some()) {
                     self.exact = Some(all_of(problem, exact));
                 }
                 self.helps = record.relaxations;
                 self.session.join(problem, record.candidates);
-                self.tell(Doing::Done, said, None);
+                self.answer(Doing::Done, said, None, sure);
             }
             News::Failed(why) => self.tell(Doing::Refused, why, None),
             News::Left => {}

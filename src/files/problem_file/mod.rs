@@ -23,6 +23,7 @@ use crate::files::toml_text::TomlText;
 use crate::files::toml_values::{Count, OnlyTable};
 use crate::mechanism::Unit;
 use crate::numbers::optimise::population::PopulationError;
+use crate::record::ProblemRecord;
 use crate::task::Problem;
 use crate::task::forms::precision;
 use crate::task::forms::precision::precision_points;
@@ -54,6 +55,14 @@ pub struct ProblemFile {
     pub expect: Option<Expect>,
     /// Warnings about values that are ignored or cannot succeed.
     pub warnings: Vec<Diagnostic>,
+}
+
+impl ProblemFile {
+    /// Returns the problem of a record.
+    pub fn of(record: ProblemRecord) -> ProblemFile {
+        let ProblemRecord { name, source, unit, resolved: spec, .. } = record;
+        ProblemFile { name, source, unit, spec, expect: None, warnings: Vec::new() }
+    }
 }
 
 /// Reads the problem of a file; `overrides` are dotted keys with values in TOML or bare words.

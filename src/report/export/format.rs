@@ -72,7 +72,7 @@ impl Format {
     /// Returns the name, the kind of the files and the settings that apply.
     fn about(self) -> (&'static str, FileKind, &'static [&'static str]) {
         const DRAWING: &[&str] = &["scale", "unit", "hole_mm", "crank_deg", "samples"];
-        const PLATES: &[&str] = &["scale", "unit", "hole_mm", "margin_mm", "kerf_mm", "gap_mm"];
+        const PLATES: &[&str] = &["scale", "unit", "hole_mm", "margin_mm", "kerf_mm", "gap_mm", "sheet_mm"];
         const BODIES: &[&str] =
             &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm", "gap_mm", "chord_mm", "crank_deg"];
         const LIST: &[&str] = &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm"];

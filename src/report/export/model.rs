@@ -172,7 +172,8 @@ impl<'a> Model<'a> {
         })
     }
 
-    /// Returns the four plates in their final sizes, each with its place in the layout (with room for the kerf).
+    /// Returns the four plates in their final sizes, each with its place in the layout (with room for the kerf): one
+    /// below another, on a sheet in as many columns as that takes.
     pub(super) fn plates(&self) -> Result<Vec<(Plate, Placement)>, Refusal> {
         let (nearest, crowd) = nearest_holes(&self.linkage);
         if self.hole >= nearest {
@@ -185,14 +186,40 @@ impl<'a> Model<'a> {
             ));
         }
         let plates = Plate::all(&self.linkage, 0.5 * self.hole + self.margin);
-        let mut top = 0.0;
-        let placed = plates.into_iter().map(|plate| {
-            let [low, high] = plate.bounds();
-            let origin = Complex::new(-low.re, top - low.im);
-            top += high.im - low.im + self.gap;
+        let sizes: Vec<Complex> = plates.iter().map(|plate| plate.bounds()[1] - plate.bounds()[0]).collect();
+        let corners = match self.settings.sheet_mm {
+            None => in_columns(&sizes, self.gap, f64::INFINITY),
+            Some([width, height]) => self.on_sheet(&sizes, Complex::new(width, height))?,
+        };
+        let placed = plates.into_iter().zip(corners).map(|(plate, corner)| {
+            let origin = corner - plate.bounds()[0];
             (plate, Placement { origin, ..Placement::HOME })
         });
         Ok(placed.collect())
+    }
+
+    /// Returns the lower left corners of plates of these sizes on a sheet, whose rim the tool may cut.
+    fn on_sheet(&self, sizes: &[Complex], sheet: Complex) -> Result<Vec<Complex>, Refusal> {
+        let room = sheet - Complex::new(self.kerf, self.kerf);
+        let corners = in_columns(sizes, self.gap, room.im);
+        let farthest = |of: fn(&Complex) -> f64| {
+            corners.iter().zip(sizes).map(|(corner, size)| of(&(corner + size))).fold(0.0, f64::max)
+        };
+        let [width, height] = [farthest(|at| at.re), farthest(|at| at.im)];
+        if width <= room.re && height <= room.im {
+            return Ok(corners);
+        }
+        let needed = [width + self.kerf, height + self.kerf].map(|side| side.ceil());
+        Err(Refusal::about(
+            self.settings,
+            "sheet_mm",
+            format!("the plates do not fit on a sheet of {} x {} mm", exact(sheet.re), exact(sheet.im)),
+            format!(
+                "{} x {} mm would do, and a smaller scale, margin_mm or gap_mm needs less",
+                exact(needed[0]),
+                exact(needed[1])
+            ),
+        ))
     }
 
     /// Returns the outline of a plate along which the tool's centre moves: grown by half the kerf.
@@ -204,6 +231,22 @@ impl<'a> Model<'a> {
     pub(super) fn cut_hole(&self) -> f64 {
         0.5 * (self.hole - self.kerf)
     }
+}
+
+/// Returns the lower left corners of boxes that stand one above another, in as many columns as it takes to stay below a
+/// height; a box that is higher has a column of its own.
+fn in_columns(sizes: &[Complex], gap: f64, height: f64) -> Vec<Complex> {
+    let (mut corner, mut next_column) = (Complex::new(0.0, 0.0), 0.0_f64);
+    let place = |size: &Complex| {
+        if corner.im > 0.0 && corner.im + size.im > height {
+            corner = Complex::new(next_column, 0.0);
+        }
+        let at = corner;
+        next_column = next_column.max(at.re + size.re + gap);
+        corner.im += size.im + gap;
+        at
+    };
+    sizes.iter().map(place).collect()
 }
 
 /// Returns the unit of the file, or that of the settings if the file has none.

@@ -52,6 +52,8 @@ pub struct Settings {
     pub thickness_mm: Option<f64>,
     /// The least distance between plates that are laid out, in mm.
     pub gap_mm: Option<f64>,
+    /// The width and height of the sheet that the plates are laid out on, in mm; none: one below another.
+    pub sheet_mm: Option<[f64; 2]>,
     /// The largest distance between a round edge and the polygon that replaces it, in mm.
     pub chord_mm: Option<f64>,
     /// The crank angle of drawings, in degrees from the x axis.
@@ -104,6 +106,7 @@ impl Settings {
             "margin_mm" => self.margin_mm = Some(number(key, value, POSITIVE)?),
             "kerf_mm" => self.kerf_mm = Some(number(key, value, NOT_NEGATIVE)?),
             "gap_mm" => self.gap_mm = Some(number(key, value, NOT_NEGATIVE)?),
+            "sheet_mm" => self.sheet_mm = Some(sheet(value)?),
             "crank_deg" => self.crank_deg = Some(number(key, value, ANY)?),
             "omega_rad_s" => self.omega_rad_s = Some(number(key, value, ANY)?),
             "samples" => self.samples = Some(count(key, value, 8..=100_000)?),
@@ -156,6 +159,16 @@ fn number(key: &str, value: &str, (least, help): Range) -> Result<f64, Refusal> 
             wrong(format!("`{key}` is not a number: {value}{comma}"))
         }
     }
+}
+
+/// Reads the width and the height of a sheet, such as `600x300`.
+fn sheet(value: &str) -> Result<[f64; 2], Refusal> {
+    let help = "write its width and its height, such as 600x300";
+    let Some((width, height)) = value.split_once(['x', 'X', '×']) else {
+        return Err(Refusal::new(format!("`sheet_mm` is no size of a sheet: {value}"), help));
+    };
+    let side = |text: &str| number("sheet_mm", text.trim(), (POSITIVE.0, help));
+    Ok([side(width)?, side(height)?])
 }
 
 fn count(key: &str, value: &str, range: std::ops::RangeInclusive<usize>) -> Result<usize, Refusal> {

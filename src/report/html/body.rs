@@ -31,9 +31,23 @@ pub(super) fn body(record: &Record, drawings: &[&str], extent: Extent, shown: Sh
                 kbd { "1" } " to " kbd { "9" }
                 " candidate; arrow keys turn the crank while it or the slider has the focus."
             }
+            p.screen-only { "To go on with its problem: " code { "linkwright studio report.html" } " opens this file." }
             p { "Written by linkwright " (env!("CARGO_PKG_VERSION")) " from the record alone." }
         }
+        script type="application/json" id=(PROBLEM) { (PreEscaped(super::page::embedded(&record.problem))) }
     }
+}
+
+/// The id of the element with the problem as JSON.
+const PROBLEM: &str = "problem";
+
+/// Returns the JSON of the problem that a report holds: a [`ProblemRecord`](crate::record::ProblemRecord); `None` if the
+/// text is no such report.
+pub fn problem_json(report: &str) -> Option<&str> {
+    let begin = format!(r#"<script type="application/json" id="{PROBLEM}">"#);
+    // The last one: no text of a record can write markup, and nothing of it stands behind.
+    let (_, after) = report.rsplit_once(&begin)?;
+    Some(after.split_once("</script>")?.0)
 }
 
 /// The place in which the script puts the player; hidden without the script.

@@ -100,6 +100,8 @@ fn page_with_drawings(record: &Record, shown: Shown, drawings: &[&str], extent: 
     .render()
 }
 
+pub use body::problem_json;
+
 /// Returns the report's header on the whole run, as markup: the outcome, the obstacles, and the changes that would
 /// help.
 pub fn summary_markup(record: &Record) -> String {

@@ -9,7 +9,7 @@
 pub mod nine;
 
 use crate::judge::loosen::judged_under;
-use crate::judge::rank::{compare, distinct, sort};
+use crate::judge::rank::{compare, distinct, distinct_places};
 use crate::judge::warm::start_at;
 use crate::record::Candidate;
 use crate::synthesis::constants::live::{EFFORT, EVALUATIONS, FIRST_LOOK, FOLLOWING};
@@ -18,10 +18,15 @@ use crate::synthesis::nearest::nearest_positions;
 use crate::synthesis::{Budget, Context, plan};
 use crate::task::Problem;
 
-/// The candidates that follow a target.
+/// The candidates that follow a target. Each has a number of its own, which it keeps while it follows.
 #[derive(Clone, Debug, Default)]
 pub struct Session {
     kept: Vec<Candidate>,
+    /// The number of each.
+    numbers: Vec<u64>,
+    /// Numbers given so far.
+    given: u64,
+    held: Option<u64>,
 }
 
 impl Session {
@@ -30,9 +35,21 @@ impl Session {
         &self.kept
     }
 
+    /// Returns the number of each candidate.
+    pub fn numbers(&self) -> &[u64] {
+        &self.numbers
+    }
+
     /// Removes all candidates: for a target that is unrelated to the one before.
     pub fn clear(&mut self) {
         self.kept.clear();
+        self.numbers.clear();
+    }
+
+    /// Holds the candidate with this number: it stays among the candidates however good the others are, as long as it
+    /// can follow. `None`: none is held.
+    pub fn hold(&mut self, number: Option<u64>) {
+        self.held = number;
     }
 
     /// Fits the candidates again, each from its present parameters, to a problem whose target or limits have moved.
@@ -40,22 +57,42 @@ impl Session {
     /// A candidate with another number of positions than there are points is placed anew on its own curve. One that
     /// cannot follow (its loop opens at a point) is left out. The candidates are ranked anew, better first.
     pub fn follow(&mut self, problem: &Problem, budget: &Budget<'_>) -> &[Candidate] {
-        let kept = std::mem::take(&mut self.kept);
-        self.kept = kept.iter().filter_map(|candidate| followed(problem, candidate, budget)).collect();
-        sort(problem, &mut self.kept);
+        let kept = self.take_all();
+        let follow = |(number, candidate): &(u64, Candidate)| {
+            followed(problem, candidate, budget).map(|candidate| (*number, candidate))
+        };
+        let mut all: Vec<(u64, Candidate)> = kept.iter().filter_map(follow).collect();
+        all.sort_by(|(_, one), (_, other)| compare(problem, one, other));
+        self.keep(all)
+    }
+
+    /// Adds the candidates of a search and keeps the best distinct ones of all, at most [`FOLLOWING`], and behind them
+    /// the one that is held.
+    ///
+    /// If one is accepted, only accepted ones stay, and the one that is held.
+    pub fn join(&mut self, problem: &Problem, found: Vec<Candidate>) -> &[Candidate] {
+        let mut all: Vec<(u64, Candidate)> = Vec::with_capacity(found.len() + self.kept.len());
+        for candidate in found {
+            self.given += 1;
+            all.push((self.given, candidate));
+        }
+        all.append(&mut self.take_all());
+        let (numbers, candidates): (Vec<u64>, Vec<Candidate>) = all.into_iter().unzip();
+        let mut places = distinct_places(problem, &candidates, FOLLOWING);
+        let held = numbers.iter().position(|number| Some(*number) == self.held);
+        places.extend(held.filter(|held| !places.contains(held)));
+        self.keep(places.into_iter().map(|place| (numbers[place], candidates[place].clone())).collect())
+    }
+
+    fn take_all(&mut self) -> Vec<(u64, Candidate)> {
+        std::mem::take(&mut self.numbers).into_iter().zip(std::mem::take(&mut self.kept)).collect()
+    }
+
+    fn keep(&mut self, all: Vec<(u64, Candidate)>) -> &[Candidate] {
+        (self.numbers, self.kept) = all.into_iter().unzip();
         for (rank, candidate) in (1..).zip(&mut self.kept) {
             candidate.rank = rank;
         }
-        &self.kept
-    }
-
-    /// Adds the candidates of a search and keeps the best distinct ones of all, at most [`FOLLOWING`].
-    ///
-    /// If one is accepted, only accepted ones stay.
-    pub fn join(&mut self, problem: &Problem, found: Vec<Candidate>) -> &[Candidate] {
-        let mut all = found;
-        all.append(&mut self.kept);
-        self.kept = distinct(problem, all, FOLLOWING);
         &self.kept
     }
 }
@@ -143,6 +180,33 @@ mod tests {
         let afresh = searched(&moved);
         let followed = session.candidates()[0].error.sum_sq;
         assert!(followed <= 1.5 * afresh[0].error.sum_sq, "{followed} beside {}", afresh[0].error.sum_sq);
+    }
+
+    #[test]
+    fn one_that_is_held_stays_under_its_number_whatever_is_found() {
+        let cancel = AtomicBool::new(false);
+        let budget = Budget::new(&cancel, None);
+        let before = egg(24, 0, 0.0);
+        let found = searched(&before);
+        let last = found.last().expect("several").clone();
+        let mut session = Session::default();
+        session.join(&before, vec![last]);
+        let number = session.numbers()[0];
+        let moved = egg(24, 4, 0.1);
+        session.follow(&moved, &budget);
+        assert_eq!(session.numbers(), [number]);
+        session.hold(Some(number));
+        session.join(&moved, searched(&moved));
+        assert!(session.candidates().len() > 1 && session.numbers().contains(&number));
+        session.follow(&egg(24, 4, 0.2), &budget);
+        assert!(session.numbers().contains(&number));
+        let ranks: Vec<usize> = session.candidates().iter().map(|c| c.rank).collect();
+        assert_eq!(ranks, (1..=ranks.len()).collect::<Vec<_>>());
+        // Let go, it has to be among the best.
+        session.hold(None);
+        let best = searched(&moved);
+        session.join(&moved, best);
+        assert!(session.candidates().len() <= FOLLOWING);
     }
 
     #[test]

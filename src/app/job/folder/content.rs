@@ -1,7 +1,6 @@
 //! Recognition of a result's files by their contents: a user's file with the name of such a file is left alone.
 
 use crate::files::generator::FileKind;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -27,7 +26,7 @@ pub(super) fn is_of_a_run(path: &Path, name: &str) -> bool {
         _ => return true,
     };
     let mut head = Vec::new();
-    match File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)) {
+    match super::disk::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)) {
         Ok(0) => true,
         Ok(_) => known(&head),
         // A file that has vanished was another run's; a file that cannot be read might be a user's.

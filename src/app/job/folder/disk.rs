@@ -4,6 +4,25 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
 
+/// Opens a file of a results folder for reading; a pipe or a device, which might never end or never begin, is refused.
+pub(super) fn open(path: &Path) -> io::Result<File> {
+    let mut options = File::options();
+    #[cfg(target_os = "linux")]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        // A pipe that nobody writes to is opened at once, and refused below.
+        options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits().cast_signed());
+    }
+    let refused =
+        || io::Error::new(io::ErrorKind::InvalidInput, "it is no file but a pipe, a device or a folder");
+    // Looked at before it is opened, as opening a device may do something.
+    if !fs::metadata(path)?.is_file() {
+        return Err(refused());
+    }
+    let file = options.read(true).open(path)?;
+    if file.metadata()?.is_file() { Ok(file) } else { Err(refused()) }
+}
+
 /// Creates a folder.
 pub(super) fn create_folder(path: &Path) -> io::Result<()> {
     step()?;

@@ -156,7 +156,7 @@ pub struct ResultsFolder {
 /// Returns whether a file begins as a checkpoint does, which is enough to recognise a checkpoint of linkwright's.
 fn begins_as_a_checkpoint(path: &Path) -> bool {
     let mut start = [0; 64];
-    let read = File::open(path).and_then(|mut file| file.read(&mut start)).unwrap_or(0);
+    let read = disk::open(path).and_then(|mut file| file.read(&mut start)).unwrap_or(0);
     start[..read].starts_with(b"{\"format\":") && start[..read].windows(12).any(|w| w == b"\"linkwright\"")
 }
 
@@ -223,7 +223,7 @@ fn foreign(path: &Path, names: &[String]) -> Option<String> {
     if let Some(orphan) = names.iter().find(of_a_record).filter(|_| !has_record) {
         return Some(format!("{orphan} without a record.json"));
     }
-    let unread = has_record && read_record(&path.join(RECORD)).is_err();
+    let unread = has_record && read_record_of_a_folder(&path.join(RECORD)).is_err();
     unread.then(|| format!("a {RECORD} that is not a linkwright record"))
 }
 
@@ -376,22 +376,29 @@ impl Drop for ResultsFolder {
 /// [`FolderError`] with the file and, if it is not a valid record, the line.
 pub fn read_record(path: &Path) -> Result<Record, FolderError> {
     if !path.is_dir() {
-        return read_record_file(path);
+        return read_record_file(path, read_at_most);
     }
     let records = replacement::records(path);
     let there = records.iter().find(|file| file.exists()).unwrap_or(&records[2]);
-    match read_record_file(there) {
+    match read_record_of_a_folder(there) {
         // The record was moved to its place just now.
         Err(FolderError::Io { .. } | FolderError::NoRecord { .. }) if there != &records[2] => {
-            read_record_file(&records[2])
+            read_record_of_a_folder(&records[2])
         }
         read => read,
     }
 }
 
-fn read_record_file(file: &Path) -> Result<Record, FolderError> {
+fn read_record_of_a_folder(file: &Path) -> Result<Record, FolderError> {
+    read_record_file(file, read_file_at_most)
+}
+
+fn read_record_file(
+    file: &Path,
+    read: fn(&Path, u64) -> io::Result<Option<Vec<u8>>>,
+) -> Result<Record, FolderError> {
     let path = file.display().to_string();
-    match read_at_most(file, MAX_RECORD_BYTES) {
+    match read(file, MAX_RECORD_BYTES) {
         Ok(Some(text)) => parse_record(&path, &text),
         Ok(None) => {
             // A pipe states no length.
@@ -409,7 +416,18 @@ fn read_record_file(file: &Path) -> Result<Record, FolderError> {
 /// # Errors
 /// The error of the system.
 pub fn read_at_most(file: &Path, most: u64) -> io::Result<Option<Vec<u8>>> {
-    let file = File::open(file)?;
+    at_most(File::open(file)?, most)
+}
+
+/// As [`read_at_most`], of a file in a results folder: a pipe or a device, for which nothing is to be waited, is an error.
+///
+/// # Errors
+/// The error of the system.
+pub fn read_file_at_most(file: &Path, most: u64) -> io::Result<Option<Vec<u8>>> {
+    at_most(disk::open(file)?, most)
+}
+
+fn at_most(file: File, most: u64) -> io::Result<Option<Vec<u8>>> {
     if file.metadata()?.len() > most {
         return Ok(None);
     }

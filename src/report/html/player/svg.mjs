@@ -31,8 +31,12 @@ export function setAll(node, attributes) {
   for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, String(value));
 }
 
+/** Pixels beyond which nothing is drawn: browsers lose a path with larger coordinates. */
+const FAR = 1e6;
+
 /** A pixel coordinate. @param {number} value */
-export const px = (value) => (Number.isFinite(value) ? Math.round(value * 100) / 100 : 0);
+export const px = (value) =>
+  Number.isFinite(value) ? Math.round(Math.min(Math.max(value, -FAR), FAR) * 100) / 100 : 0;
 
 /** Path data through pixel points; null breaks the line. @param {([number, number] | null)[]} points */
 export function pathThrough(points) {

@@ -1,0 +1,131 @@
+// The Build tab: plates of the chosen linkage to cut, live with their sizes; the order of layers and what comes near
+// what; everything in one archive.
+
+import { element } from "../../src/report/html/player/svg.mjs";
+import * as api from "./api";
+import type { Host } from "./desk";
+
+/** Sizes: the setting of the studio, its label, and what stands in an empty field. */
+const SIZES: [string, string, string][] = [
+  ["thickness_mm", "Thickness", "3/4 of the hole"],
+  ["hole_mm", "Holes", "4"],
+  ["margin_mm", "Material around a hole", "as the hole"],
+  ["kerf_mm", "Kerf of the tool", "0"],
+];
+/** Milliseconds after the last change of a size before the plates are drawn anew. */
+const REST = 250;
+
+export class BuildPanel {
+  private fields = new Map<string, HTMLInputElement>();
+  private sheet = [0, 1].map(
+    (i) =>
+      element("input", {
+        type: "number",
+        min: "1",
+        step: "any",
+        placeholder: "any",
+        "aria-label": i === 0 ? "Width of the sheet" : "Height of the sheet",
+      }) as HTMLInputElement,
+  );
+  private plates = element("img", { id: "plates", alt: "The plates to cut", hidden: "" }) as HTMLImageElement;
+  private fault = element("p", { class: "fault", role: "alert" });
+  private layers = element("pre", { id: "layers", tabindex: "0", "aria-label": "Layers and clearances" });
+  private save = element("button", { type: "button", id: "save-archive" }, [
+    "Save everything (zip)",
+  ]) as HTMLButtonElement;
+  private nothing = element("p", { class: "note" }, ["Draw a path first: its linkage is built here."]);
+  private timer = 0;
+  private shownOf = "";
+
+  constructor(
+    private place: HTMLElement,
+    private host: Host,
+    /** Its number in the list, for the names of files. */
+    private rank: () => string,
+  ) {
+    const rows = SIZES.map(([key, label, usual]) => {
+      const field = element("input", {
+        type: "number",
+        min: "0",
+        step: "any",
+        placeholder: usual,
+        id: key,
+      }) as HTMLInputElement;
+      this.fields.set(key, field);
+      field.addEventListener("input", () => this.later());
+      return element("label", {}, [
+        label,
+        " ",
+        element("span", { class: "field" }, [field, element("span", {}, ["mm"])]),
+      ]);
+    });
+    for (const field of this.sheet) field.addEventListener("input", () => this.later());
+    const sheet = element("div", { class: "sheet" }, ["Sheet ", this.sheet[0], " × ", this.sheet[1], " mm"]);
+    place.append(
+      element("h2", {}, ["Build it"]),
+      this.nothing,
+      element("div", { class: "sizes" }, rows),
+      sheet,
+      this.fault,
+      this.plates,
+      this.save,
+      element("details", { open: "" }, [element("summary", {}, ["Layers and clearances"]), this.layers]),
+    );
+    this.save.addEventListener("click", () => void this.archive());
+  }
+
+  private set(): Record<string, string> {
+    const set: Record<string, string> = {};
+    for (const [key, field] of this.fields) if (field.value !== "") set[key] = field.value;
+    const [width, height] = this.sheet.map((field) => field.value);
+    if (width !== "" && height !== "") set.sheet_mm = `${width}x${height}`;
+    return set;
+  }
+
+  /** Another linkage is chosen, or another size: what is in sight is made anew when the hand rests. */
+  later() {
+    clearTimeout(this.timer);
+    if (this.place.offsetParent === null) return;
+    this.timer = setTimeout(() => void this.show(), REST) as unknown as number;
+  }
+
+  private async show() {
+    const chosen = this.host.chosen();
+    for (const part of [this.plates, this.save, this.layers.parentElement as HTMLElement]) part.hidden = !chosen;
+    this.nothing.hidden = chosen !== null;
+    if (!chosen) return;
+    const [of, set] = [api.drawn(chosen), this.set()];
+    const key = JSON.stringify([of, set]);
+    if (key === this.shownOf) return;
+    this.shownOf = key;
+    try {
+      const fits = (keys: string[]) => Object.fromEntries(Object.entries(set).filter(([name]) => keys.includes(name)));
+      const plates = await api.exported(of, "svg-plates", {
+        set: fits(["hole_mm", "margin_mm", "kerf_mm", "sheet_mm"]),
+      });
+      const layers = await api.exported(of, "layers", { set: fits(["hole_mm", "margin_mm"]) });
+      const [picture, text] = await Promise.all([plates.text(), layers.text()]);
+      if (this.shownOf !== key) return;
+      this.fault.textContent = "";
+      this.plates.src = `data:image/svg+xml,${encodeURIComponent(picture)}`;
+      this.layers.textContent = text;
+      this.save.disabled = false;
+    } catch (error) {
+      if (this.shownOf !== key) return;
+      this.fault.textContent = `So it cannot be built: ${api.wordsOf(error)}`;
+      this.save.disabled = true;
+    }
+  }
+
+  private async archive() {
+    const chosen = this.host.chosen();
+    if (!chosen) return;
+    const name = `${chosen.task.name}-${this.rank()}`.slice(-64);
+    try {
+      api.saved(await api.exported(api.drawn(chosen), "archive", { set: this.set(), name }), `${name}.zip`);
+      this.host.say(`Saved as ${name}.zip.`);
+    } catch (error) {
+      this.host.say(`This cannot be saved: ${api.wordsOf(error)}`, true);
+    }
+  }
+}

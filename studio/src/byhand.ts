@@ -1,0 +1,193 @@
+// The linkage that the hand has changed: what it is now, its figures, its locks, and what can be done with it.
+
+import { element, figure } from "../../src/report/html/player/svg.mjs";
+import * as api from "./api";
+import {
+  dragged,
+  type Joint,
+  keptBy,
+  LENGTHS,
+  type Linkage,
+  type Lock,
+  lengthOf,
+  ofPose,
+  type Pose,
+  roundedTo,
+} from "./grab";
+import type { Shown, Solution, Task } from "./messages";
+import { inWords } from "./strip";
+import { sizeOf } from "./task";
+import { nearnessInWords, SIGNS, transmissionInWords } from "./words";
+
+const NAMES: Record<Lock, string> = {
+  a: "crank AC",
+  b: "coupler CD",
+  c: "follower BD",
+  d: "CP",
+  e: "DP",
+  ground: "ground AB",
+  A: "pivot A",
+  B: "pivot B",
+};
+/** Half a millimetre in the units of lengths; without a unit a length counts as one of a millimetre. */
+const HALVES: Record<string, number> = { mm: 0.5, cm: 0.05, m: 0.0005, in: 1 / 64 };
+
+export interface HandHost {
+  task(): Task;
+  /** What is in the hand has changed: another linkage, or none any more. */
+  changed(): void;
+  /** A step that can be undone is about to be made. */
+  note(): void;
+  /** Searches anew with what is locked. */
+  fit(kept: Record<string, string>): void;
+  say(text: string): void;
+}
+
+export class ByHand {
+  shown: Shown | null = null;
+  private locks = new Set<Lock>();
+  private wanted: Linkage | null = null;
+  private isAsking = false;
+  private title = element("strong", {}, ["Changed by hand"]);
+  private quality = element("p", { class: "quality" });
+  private rows = new Map<Lock, { field: HTMLInputElement | null; lock: HTMLInputElement }>();
+  private round = element("button", { type: "button", id: "hand-round" });
+
+  constructor(
+    private place: HTMLElement,
+    private host: HandHost,
+  ) {
+    const table = element("table", { class: "lengths" }, [element("tbody", {}, this.makeRows())]);
+    const button = (id: string, text: string, act: () => void) => {
+      const made = element("button", { type: "button", id }, [text]);
+      made.addEventListener("click", act);
+      return made;
+    };
+    this.round.addEventListener("click", () => this.toHalves());
+    const buttons = element("div", { class: "row" }, [
+      this.round,
+      button("hand-fit", "Fit the rest again", () => this.fit()),
+      button("hand-drop", "Let go", () => {
+        host.note();
+        this.take(null);
+      }),
+    ]);
+    place.append(this.title, this.quality, table, buttons);
+  }
+
+  private makeRows() {
+    return (["A", "B", ...LENGTHS] as Lock[]).map((name) => {
+      const lock = element("input", { type: "checkbox", "aria-label": `Lock ${NAMES[name]}` }) as HTMLInputElement;
+      lock.addEventListener("change", () => {
+        if (lock.checked) this.locks.add(name);
+        else this.locks.delete(name);
+      });
+      const isPlace = name === "A" || name === "B" || name === "ground";
+      const field = isPlace
+        ? null
+        : (element("input", { type: "number", min: "0", step: "any", "aria-label": NAMES[name] }) as HTMLInputElement);
+      field?.addEventListener("change", () => {
+        if (!this.shown || !(field.valueAsNumber > 0)) return this.show();
+        this.host.note();
+        return this.ask({ ...this.shown.linkage, [name]: field.valueAsNumber });
+      });
+      const figures = field ?? element("span", { "data-figures": name });
+      this.rows.set(name, { field, lock });
+      return element("tr", {}, [
+        element("th", { scope: "row" }, [NAMES[name]]),
+        element("td", {}, [figures]),
+        element("td", {}, [element("label", { class: "check" }, [lock, "lock"])]),
+      ]);
+    });
+  }
+
+  /** Takes a linkage into the hand; null lets it go. */
+  take(shown: Shown | null) {
+    this.shown = shown;
+    this.wanted = null;
+    if (!shown) {
+      this.locks.clear();
+      for (const { lock } of this.rows.values()) lock.checked = false;
+    }
+    this.show();
+    this.host.changed();
+  }
+
+  /** A joint is dragged from a pose to a place. */
+  drag(pose: Pose, joint: Joint, to: [number, number]) {
+    this.ask(ofPose(dragged(pose, joint, to, this.locks)));
+  }
+
+  /** The target or what is asked has changed: it is judged anew. */
+  again() {
+    if (this.shown) this.ask(this.shown.linkage);
+  }
+
+  /** Asks the studio what it makes of a linkage; of several that wait the latest counts. */
+  private ask(linkage: Linkage) {
+    this.wanted = linkage;
+    if (!this.isAsking) void this.answer();
+  }
+
+  private async answer() {
+    this.isAsking = true;
+    while (this.wanted) {
+      const linkage: Linkage = this.wanted;
+      this.wanted = null;
+      try {
+        const shown = await api.judged(this.host.task(), linkage);
+        if (!this.shown) break;
+        this.shown = shown;
+        this.show();
+        this.host.changed();
+      } catch (error) {
+        this.host.say(`So it is no linkage: ${api.wordsOf(error)}.`);
+        this.show();
+      }
+    }
+    this.isAsking = false;
+  }
+
+  private toHalves() {
+    if (!this.shown) return;
+    this.host.note();
+    this.ask(roundedTo(this.shown.linkage, HALVES[this.host.task().unit ?? "mm"], this.locks));
+  }
+
+  private fit() {
+    if (!this.shown) return;
+    if (this.locks.size === 0) return this.host.say("Lock what is to stay: the rest is fitted again around it.");
+    const kept = keptBy(this.shown.linkage, this.locks);
+    this.host.note();
+    this.take(null);
+    this.host.fit(kept);
+  }
+
+  private show() {
+    const { shown } = this;
+    this.place.hidden = !shown;
+    if (!shown) return;
+    const { unit, points } = this.host.task();
+    this.round.textContent = unit === "in" ? "Round to 1/64 in" : "Round to 0.5 mm";
+    const graded = [nearnessInWords(shown, sizeOf(points)), transmissionInWords(shown.transmission_deg)];
+    this.quality.replaceChildren(
+      ...graded.map(({ grade, text }) => element("span", { class: grade }, [`${SIGNS[grade]} ${text}`])),
+      element("span", {}, [`${shown.type}; ${inWords(shown)}`]),
+    );
+    for (const [name, { field }] of this.rows) {
+      if (field && document.activeElement !== field)
+        field.value = String(Number(shown.linkage[name as "a"].toPrecision(6)));
+    }
+    for (const span of this.place.querySelectorAll<HTMLElement>("[data-figures]")) {
+      const name = span.dataset.figures as "A" | "B" | "ground";
+      span.textContent =
+        name === "ground"
+          ? figure(lengthOf(shown.linkage, name), 5)
+          : shown.linkage[name].map((x) => figure(x, 5)).join(", ");
+    }
+  }
+
+  solution(): Solution | null {
+    return this.shown && { shown: this.shown, task: this.host.task() };
+  }
+}

@@ -1,0 +1,53 @@
+// The gallery of examples: small linkages that move, each loaded by one click.
+
+import { element } from "../../src/report/html/player/svg.mjs";
+import { EXAMPLES, type Example } from "./examples";
+import { movingOf } from "./figures";
+import type { Shown } from "./messages";
+import { Picture } from "./picture";
+import THUMBNAILS from "./thumbnails.json";
+
+const [WIDTH, HEIGHT] = [104, 76];
+
+export class Gallery {
+  private pictures: Picture[] = [];
+  private close = element("button", { type: "button", class: "drop", "aria-label": "Close the examples" }, ["×"]);
+
+  constructor(
+    private place: HTMLElement,
+    private opener: HTMLButtonElement,
+    take: (example: Example) => void,
+  ) {
+    const items = EXAMPLES.map((example) => {
+      const { name, task } = example;
+      const shown = (THUMBNAILS as unknown as Record<string, Shown>)[task.name];
+      const picture = new Picture(WIDTH, HEIGHT, 0.45);
+      if (shown) picture.show(movingOf(shown, task.points), task.points, task.closed, 0);
+      this.pictures.push(picture);
+      const button = element("button", { type: "button", class: "example" }, [
+        picture.svg,
+        element("span", {}, [name]),
+      ]);
+      button.addEventListener("click", () => {
+        this.open(false);
+        take(example);
+      });
+      return element("li", {}, [button]);
+    });
+    place.append(element("ul", {}, items), this.close);
+    this.close.addEventListener("click", () => {
+      this.open(false);
+      opener.focus();
+    });
+    opener.addEventListener("click", () => this.open(this.place.hidden));
+  }
+
+  open(on: boolean) {
+    this.place.hidden = !on;
+    this.opener.setAttribute("aria-expanded", String(on));
+  }
+
+  pose(part: number) {
+    if (!this.place.hidden) for (const picture of this.pictures) picture.pose(part);
+  }
+}
