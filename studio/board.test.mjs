@@ -1,25 +1,12 @@
 // The board keeps its view, its size and what stood on it: see .ci/check-studio.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { doing, endAll, browser as launched, opened, shots, status, studio, tab } from "./harness.mjs";
+import { test } from "node:test";
+import { begun, button, doing, house, shots, status, tab } from "./harness.mjs";
 
-let browser;
-const work = mkdtempSync(join(tmpdir(), "linkwright-board-"));
-process.chdir(work);
-before(async () => {
-  browser = await launched();
-});
-after(async () => {
-  await browser?.close();
-  endAll();
-  rmSync(work, { recursive: true, force: true });
-});
+const home = house("board");
 
-const button = (page, name) => page.getByRole("button", { name, exact: true });
 const scale = (page) => page.locator(".scale").getAttribute("d");
 const width = async (page) => Number(await page.locator("#path-width").inputValue());
 const linkages = (page) => page.locator("#strip li .figures").allTextContents();
@@ -46,8 +33,7 @@ const egg = (t) => [0.9 * Math.cos(t) + 0.1 * Math.cos(2 * t), 0.5 * Math.sin(t)
 const near = (one, other, part) => Math.abs(one - other) <= part * other;
 
 test("the same stroke has the same size, whatever was answered; steps back bring back what stood there", async () => {
-  const { address, end } = await studio("--port", "0");
-  const { page, said, context } = await opened(browser, address);
+  const { page, said, context, end } = await begun(home);
   await button(page, "Clear").click();
   const first = await scale(page);
   const sizes = [];
@@ -94,8 +80,7 @@ test("the same stroke has the same size, whatever was answered; steps back bring
 });
 
 test("the size is a number on the board; the longest link is a wish; a refusal can be read", async () => {
-  const { address, end } = await studio("--port", "0");
-  const { page, said, context } = await opened(browser, address);
+  const { page, said, context, end } = await begun(home);
   await button(page, "Clear").click();
   assert.ok(!(await page.locator("#closed").isChecked()), "no path is closed before it is drawn");
   await drawn(page, egg);
@@ -141,8 +126,7 @@ test("the size is a number on the board; the longest link is a wish; a refusal c
 });
 
 test("a card, the status and the whole path are in sight at every size, and the page has no scroll bar", async () => {
-  const { address, end } = await studio("--port", "0");
-  const { page, said, context } = await opened(browser, address);
+  const { page, said, context, end } = await begun(home);
   for (const [wide, high] of [
     [1280, 900],
     [1920, 1080],

@@ -2,37 +2,17 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 import { deflateRawSync } from "node:zlib";
-import {
-  studio as begun,
-  doing,
-  endAll,
-  browser as launched,
-  opened as openedIn,
-  program,
-  shots,
-  tab,
-} from "./harness.mjs";
+import { studio as begun, doing, house, opened as openedIn, program, shots, tab } from "./harness.mjs";
 
-const work = mkdtempSync(join(tmpdir(), "desk-"));
-let browser;
-
-before(async () => {
-  if (shots) mkdirSync(shots, { recursive: true });
-  browser = await launched();
-});
-after(async () => {
-  await browser?.close();
-  endAll();
-  rmSync(work, { recursive: true, force: true });
-});
+const home = house("desk");
+const { work } = home;
 
 const studio = (port, folder) => begun("--port", port, "--out", folder);
-const opened = (address, context) => openedIn(browser, address, { context });
+const opened = (address, context) => openedIn(home.browser, address, { context });
 const done = (page) => doing(page, "done");
 const state = (page, name, what) =>
   page.waitForFunction(

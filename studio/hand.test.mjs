@@ -1,47 +1,30 @@
 // The hand on the board in headless Chromium: what a click, a drag, two fingers and a new stroke change. See .ci/check-studio.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 import {
+  button,
   doing,
-  endAll,
   example,
-  browser as launched,
-  opened,
+  house,
   problemText,
   shots,
+  begun as started,
   status,
   studio,
   tab,
 } from "./harness.mjs";
 
-const work = mkdtempSync(join(tmpdir(), "studio-hand-"));
 const problems = new URL("../problems/", import.meta.url).pathname;
-let browser;
+const home = house("hand");
+const { work } = home;
 
-before(async () => {
-  browser = await launched();
-});
-after(async () => {
-  await browser?.close();
-  endAll();
-  rmSync(work, { recursive: true, force: true });
-});
-
-let port = 18500;
-
-/** A studio on a port of its own, with a page. */
-async function begun(file, options) {
-  port += 1;
-  const running = await studio("--port", String(port), "--out", join(work, "results"), ...(file ? [file] : []));
-  return { ...running, ...(await opened(browser, running.address, options)) };
-}
+/** A studio with a page, begun with a problem file if there is one. */
+const begun = (file, options) => started(home, file ? [file] : [], options);
 
 const shot = (page, name) => shots && page.screenshot({ path: join(shots, `${name}.png`), fullPage: true });
-const button = (page, name) => page.getByRole("button", { name, exact: true });
 const texts = (page) => page.locator("#coordinates").inputValue();
 
 /** The middle of something on the board. */

@@ -1,7 +1,10 @@
 // A studio and a browser for tests: see .ci/check-studio.
 
 import { spawn } from "node:child_process";
-import { readFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before } from "node:test";
 import { chromium } from "playwright-core";
 
 export const program = process.env.LINKWRIGHT;
@@ -82,6 +85,28 @@ export async function opened(browser, address, { context: shared, ...options } =
   page.on("pageerror", (error) => said.push(`error: ${error.message}`));
   await page.waitForSelector("#strip li");
   return { page, said, context };
+}
+
+/** A browser and a folder for the tests of a file, cleared away after them. */
+export function house(name) {
+  const made = { work: mkdtempSync(join(tmpdir(), `linkwright-${name}-`)), browser: null, studios: 0 };
+  before(async () => {
+    if (shots) mkdirSync(shots, { recursive: true });
+    made.browser = await browser();
+  });
+  after(async () => {
+    await made.browser?.close();
+    endAll();
+    rmSync(made.work, { recursive: true, force: true });
+  });
+  return made;
+}
+
+/** A studio on a free port, which saves in a folder of its own in the house, with a page. */
+export async function begun(house, more = [], options = {}) {
+  house.studios += 1;
+  const running = await studio("--port", "0", "--out", join(house.work, `results-${house.studios}`), ...more);
+  return { ...running, ...(await opened(house.browser, running.address, options)) };
 }
 
 export const status = (page) => page.locator("#status").textContent();

@@ -2,34 +2,17 @@
 // See .ci/check-studio.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { doing, endAll, example, browser as launched, opened, shots, status, studio, tab } from "./harness.mjs";
+import { test } from "node:test";
+import { button, doing, example, house, shots, begun as started, status, tab } from "./harness.mjs";
 
-const work = mkdtempSync(join(tmpdir(), "studio-pins-"));
 const problems = new URL("../problems/", import.meta.url).pathname;
-let browser;
-let port = 18520;
+const home = house("pins");
 
-before(async () => {
-  browser = await launched();
-});
-after(async () => {
-  await browser?.close();
-  endAll();
-  rmSync(work, { recursive: true, force: true });
-});
-
-async function begun(...options) {
-  port += 1;
-  const running = await studio("--port", String(port), "--out", join(work, `results-${port}`), ...options);
-  return { ...running, ...(await opened(browser, running.address)) };
-}
+const begun = (...options) => started(home, options);
 
 const shot = (page, name) => shots && page.screenshot({ path: join(shots, `${name}.png`), fullPage: true });
-const button = (page, name) => page.getByRole("button", { name, exact: true });
 const pressed = (page) => page.locator(".pick[aria-pressed=true] strong").allTextContents();
 const said = (page, says) =>
   page.waitForFunction((says) => new RegExp(says).test(document.querySelector("#desk-said").textContent), says.source);

@@ -2,36 +2,15 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import {
-  doing,
-  endAll,
-  browser as launched,
-  opened as openedIn,
-  program,
-  shots,
-  status,
-  studio,
-  tab,
-} from "./harness.mjs";
+import { test } from "node:test";
+import { doing, house, opened as openedIn, program, shots, status, studio, tab } from "./harness.mjs";
 
-const work = mkdtempSync(join(tmpdir(), "studio-"));
-let browser;
+const home = house("studio");
+const { work } = home;
 
-before(async () => {
-  if (shots) mkdirSync(shots, { recursive: true });
-  browser = await launched();
-});
-after(async () => {
-  await browser?.close();
-  endAll();
-  rmSync(work, { recursive: true, force: true });
-});
-
-const opened = (address, options) => openedIn(browser, address, options);
+const opened = (address, options) => openedIn(home.browser, address, options);
 
 /** Draws a closed curve with the pen. */
 async function drawn(page) {

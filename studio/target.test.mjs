@@ -2,37 +2,14 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import {
-  doing,
-  endAll,
-  example,
-  browser as launched,
-  opened,
-  problemText,
-  program,
-  shots,
-  status,
-  studio,
-  tab,
-} from "./harness.mjs";
+import { test } from "node:test";
+import { doing, example, house, opened, problemText, program, shots, status, studio, tab } from "./harness.mjs";
 
-const work = mkdtempSync(join(tmpdir(), "studio-target-"));
 const problems = new URL("../problems/", import.meta.url).pathname;
-let browser;
-
-before(async () => {
-  if (shots) mkdirSync(shots, { recursive: true });
-  browser = await launched();
-});
-after(async () => {
-  await browser?.close();
-  endAll();
-  rmSync(work, { recursive: true, force: true });
-});
+const home = house("target");
+const { work } = home;
 
 const shot = (page, name) => shots && page.screenshot({ path: join(shots, `${name}.png`), fullPage: true });
 const open = (page, panel) => page.locator(`#${panel} summary`).click();
@@ -69,7 +46,7 @@ const count = (page, n) =>
 
 test("a table of points with crank angle, tolerance and weight; all of it can be undone", async () => {
   const { address, end } = await studio("--port", "18481");
-  const { page, said, context } = await opened(browser, address);
+  const { page, said, context } = await opened(home.browser, address);
   await tab(page, "points");
   await page.locator("#coordinates").fill("0, 0\n10, 4\n20, 5\n30, 4\n40, 0\n");
   await page.getByRole("button", { name: "Take these points" }).click();
@@ -154,7 +131,7 @@ test("a table of points with crank angle, tolerance and weight; all of it can be
 
 test("points files, drawings and problems are dropped, pasted, opened; what is wrong is said with its line", async () => {
   const { address, end } = await studio("--port", "18482");
-  const { page, said, context } = await opened(browser, address);
+  const { page, said, context } = await opened(home.browser, address);
   await dropped(page, "timed.csv", "text/csv", "x,y,crank_deg,tolerance\n0,0,0,1\n10,5,30,2\n20,7,60,2\n30,5,90,1\n");
   await count(page, 4);
   assert.equal(await page.locator("#timing").inputValue(), "free");
@@ -180,6 +157,7 @@ test("points files, drawings and problems are dropped, pasted, opened; what is w
   assert.match(await problemText(page), /name = "k18"[\s\S]*crank_deg = /);
   assert.match(await page.locator("#kept").textContent(), /design\./);
   const kept = await page.locator("#kept li").count();
+  await tab(page, "wishes");
   await page.locator("#kept button").first().click();
   // The bound, and what was known of the answer within it.
   assert.equal(await page.locator("#kept li").count(), kept - 2);
@@ -189,8 +167,10 @@ test("points files, drawings and problems are dropped, pasted, opened; what is w
   const known = (text) => text.split("[expect]")[1] ?? "";
   const published = known(await problemText(page));
   assert.match(published, /best_known_sum_sq = 0\.009028884631[\s\S]*(\[\[expect.published\]\][\s\S]*){3}/);
+  await tab(page, "points");
   await page.locator("#unit").selectOption("in");
   assert.equal(known(await problemText(page)), published);
+  await tab(page, "points");
   await typed(page, cell(page, "Point 3, y"), "1.05");
   await page.waitForFunction(() => /published .* let go/.test(document.querySelector("#desk-said").textContent));
   assert.equal(known(await problemText(page)), "");
@@ -203,7 +183,7 @@ test("points files, drawings and problems are dropped, pasted, opened; what is w
     ["bad.svg", "<svg><text>hello</text></svg>", /no/],
     ["bad.toml", 'format = 1\n[task.path]\nfile = "/etc/passwd"\n', /cannot be read here/],
     ["big.csv", `x,y\n${"1,2\n2,1\n".repeat(30_000)}`, /too long/],
-    ["many.csv", `x,y\n${"1,2\n2,1\n".repeat(501)}`, /1002 points/],
+    ["many.toml", `format = 1\n[task.path]\npoints = [${"[1, 2], [2, 1], ".repeat(501)}]\n`, /1000 points/],
   ]) {
     await dropped(page, name, "text/plain", text);
     await page.waitForFunction(
@@ -225,7 +205,7 @@ test("points files, drawings and problems are dropped, pasted, opened; what is w
 
 test("boxes are drawn with the mouse and with keys", async () => {
   const { address, end } = await studio("--port", "18483");
-  const { page, said, context } = await opened(browser, address);
+  const { page, said, context } = await opened(home.browser, address);
   await doing(page, "done");
   const board = await page.locator("#board svg").boundingBox();
   await page.getByRole("button", { name: "Draw the pivot box" }).click();
@@ -263,7 +243,7 @@ test("boxes are drawn with the mouse and with keys", async () => {
 
 test("a photograph lies beneath, gets its scale by two clicks and a length, and stays in the browser", async () => {
   const { address, end } = await studio("--port", "18484");
-  const { page, said, context } = await opened(browser, address);
+  const { page, said, context } = await opened(home.browser, address);
   await doing(page, "done");
   const sent = [];
   page.on("request", (request) => sent.push(request.url()));
@@ -284,6 +264,7 @@ test("a photograph lies beneath, gets its scale by two clicks and a length, and 
     ).split(",")[1],
     "base64",
   );
+  await tab(page, "points");
   await page.locator("#photo").setInputFiles({ name: "lever.png", mimeType: "image/png", buffer: picture });
   await page.waitForSelector("#photo-placing:not([hidden])");
   const x = () => page.locator("#photo-x").inputValue().then(Number);
@@ -293,7 +274,6 @@ test("a photograph lies beneath, gets its scale by two clicks and a length, and 
   await page.mouse.move(board.x + 340, board.y + 200, { steps: 3 });
   await page.mouse.up();
   assert.ok((await x()) > left);
-  await tab(page, "points");
   await page.getByRole("button", { name: "Set its scale" }).click();
   await page.mouse.click(board.x + 200, board.y + 200);
   await page.mouse.click(board.x + 500, board.y + 200);
@@ -338,7 +318,7 @@ test("a photograph lies beneath, gets its scale by two clicks and a length, and 
 
 test("nine points: every real linkage, counted, and they follow a point", async () => {
   const { address, end } = await studio("--port", "18485", join(problems, "exact/crank-rocker.toml"));
-  const { page, said, context } = await opened(browser, address);
+  const { page, said, context } = await opened(home.browser, address);
   await doing(page, "done");
   const checked = await page.locator("#exact").isChecked();
   if (!checked) await page.locator("#exact").check();
@@ -422,7 +402,7 @@ test("nine points: every real linkage, counted, and they follow a point", async 
 
 test("what stands in the way is said, and a change that helps is one click", async () => {
   const { address, end } = await studio("--port", "18486");
-  const { page, said, context } = await opened(browser, address);
+  const { page, said, context } = await opened(home.browser, address);
   await tab(page, "points");
   await page.locator("#coordinates").fill("0, 0\n10, 4\n20, 5\n30, 4\n40, 0\n");
   await page.getByRole("button", { name: "Take these points" }).click();
@@ -449,7 +429,7 @@ test("what stands in the way is said, and a change that helps is one click", asy
 
 test("the main job by keys alone, and by what a screen reader is told", async () => {
   const { address, end } = await studio("--port", "18487");
-  const { page, said, context } = await opened(browser, address);
+  const { page, said, context } = await opened(home.browser, address);
   /** Goes on by Tab until the control of this name is reached. */
   const reach = async (name) => {
     for (let i = 0; i < 150; i += 1) {
@@ -525,7 +505,8 @@ test("the main job by keys alone, and by what a screen reader is told", async ()
     "status",
     'group "Drawing"',
     'button "Pin linkage 1"',
-    'combobox "Timing',
+    'tab "Build" [selected]',
+    'textbox "Name"',
   ])
     assert.ok(tree.includes(line), `${line} in\n${tree}`);
   for (const id of ["#spoken", "#told", "#desk-said"])
@@ -544,7 +525,7 @@ test("the main job by keys alone, and by what a screen reader is told", async ()
 
 test("an answer never moves the view; the whole path is on the board; hints are ticked off; every example runs", async () => {
   const { address, end } = await studio("--port", "18488");
-  const { page, said, context } = await opened(browser, address);
+  const { page, said, context } = await opened(home.browser, address);
   const box = await page.locator("#board svg").boundingBox();
   const at = (t) => [
     box.x + box.width * (0.75 + 0.18 * Math.cos(t)),
@@ -581,7 +562,7 @@ test("an answer never moves the view; the whole path is on the board; hints are 
 
 test("screens: two sizes, light and dark, with panels open", async () => {
   const { address, end } = await studio("--port", "18489");
-  const { page, context } = await opened(browser, address, { reducedMotion: "reduce" });
+  const { page, context } = await opened(home.browser, address, { reducedMotion: "reduce" });
   await doing(page, "done");
   await tab(page, "points");
   await tab(page, "wishes");

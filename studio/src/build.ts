@@ -27,7 +27,7 @@ export class BuildPanel {
         "aria-label": i === 0 ? "Width of the sheet" : "Height of the sheet",
       }) as HTMLInputElement,
   );
-  private plates = element("img", { id: "plates", alt: "The plates to cut", hidden: "" }) as HTMLImageElement;
+  private plates = element("div", { id: "plates", role: "img", "aria-label": "The plates to cut", hidden: "" });
   private fault = element("p", { class: "fault", role: "alert" });
   private layers = element("pre", { id: "layers", tabindex: "0", "aria-label": "Layers and clearances" });
   private save = element("button", { type: "button", id: "save-archive" }, [
@@ -107,7 +107,7 @@ export class BuildPanel {
       const [picture, text] = await Promise.all([plates.text(), layers.text()]);
       if (this.shownOf !== key) return;
       this.fault.textContent = "";
-      this.plates.src = `data:image/svg+xml,${encodeURIComponent(picture)}`;
+      this.plates.replaceChildren(new DOMParser().parseFromString(picture, "image/svg+xml").documentElement);
       this.layers.textContent = text;
       this.save.disabled = false;
     } catch (error) {

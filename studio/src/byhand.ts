@@ -48,6 +48,8 @@ export class ByHand {
   private locks = new Set<Lock>();
   private wanted: Linkage | null = null;
   private isAsking = false;
+  /** Counts what was taken into the hand: an answer about the one before is late. */
+  private taken = 0;
   private title = element("strong", {}, ["Changed by hand"]);
   private quality = element("p", { class: "quality" });
   private rows = new Map<Lock, { field: HTMLInputElement | null; lock: HTMLInputElement }>();
@@ -57,7 +59,11 @@ export class ByHand {
     private place: HTMLElement,
     private host: HandHost,
   ) {
-    const table = element("table", { class: "lengths" }, [element("tbody", {}, this.makeRows())]);
+    const head = ["", "", "lock"].map((text) => element("th", { scope: "col" }, [text]));
+    const table = element("table", { class: "lengths" }, [
+      element("thead", {}, [element("tr", {}, head)]),
+      element("tbody", {}, this.makeRows()),
+    ]);
     const button = (id: string, text: string, act: () => void) => {
       const made = element("button", { type: "button", id }, [text]);
       made.addEventListener("click", act);
@@ -96,7 +102,7 @@ export class ByHand {
       return element("tr", {}, [
         element("th", { scope: "row" }, [NAMES[name]]),
         element("td", {}, [figures]),
-        element("td", {}, [element("label", { class: "check" }, [lock, "lock"])]),
+        element("td", {}, [lock]),
       ]);
     });
   }
@@ -105,6 +111,7 @@ export class ByHand {
   take(shown: Shown | null) {
     this.shown = shown;
     this.wanted = null;
+    this.taken += 1;
     if (!shown) {
       this.locks.clear();
       for (const { lock } of this.rows.values()) lock.checked = false;
@@ -134,9 +141,10 @@ export class ByHand {
     while (this.wanted) {
       const linkage: Linkage = this.wanted;
       this.wanted = null;
+      const { taken } = this;
       try {
         const shown = await api.judged(this.host.task(), linkage);
-        if (!this.shown) break;
+        if (taken !== this.taken || !this.shown) continue;
         this.shown = shown;
         this.show();
         this.host.changed();
@@ -176,7 +184,7 @@ export class ByHand {
     );
     for (const [name, { field }] of this.rows) {
       if (field && document.activeElement !== field)
-        field.value = String(Number(shown.linkage[name as "a"].toPrecision(6)));
+        field.value = String(Number(shown.linkage[name as "a"].toPrecision(5)));
     }
     for (const span of this.place.querySelectorAll<HTMLElement>("[data-figures]")) {
       const name = span.dataset.figures as "A" | "B" | "ground";

@@ -4,7 +4,7 @@ import { element, figure } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
 import { changing, setChildren } from "./focus";
-import type { Task } from "./messages";
+import type { Solution, Task } from "./messages";
 import { taskOf } from "./task";
 
 /** Milliseconds between looks while something runs, and while nothing does. */
@@ -256,7 +256,10 @@ export class JobsPanel {
       .filter(([, row]) => row.chosen.checked)
       .map(([name]): api.Source => ({ job: { name, rank: 1 } }));
     const [pinned, chosen] = [this.host.pinned(), this.host.chosen()];
-    const drawn = [...pinned, ...(chosen && !pinned.includes(chosen) ? [chosen] : [])];
+    // One that is pinned and on the board too stands there once.
+    const key = (one: Solution) => JSON.stringify(api.drawn(one));
+    const isPinned = chosen && pinned.some((one) => key(one) === key(chosen));
+    const drawn = [...pinned, ...(chosen && !isPinned ? [chosen] : [])];
     // The studio calls them by their numbers in this list.
     drawn.forEach((one, i) => {
       named.set(`drawing ${of.length + i + 1}`, pinned.includes(one) ? `pinned ${i + 1}` : "on the board");

@@ -73,6 +73,7 @@ class Page {
   /** The linkage that the board has shown last. */
   private onBoard: Shown | null = null;
   private hints = true;
+  private isOdd = false;
   private begunWith = "null";
   private filling: ReturnType<typeof setTimeout> | undefined;
   private looking: ReturnType<typeof setTimeout> | undefined;
@@ -136,8 +137,8 @@ class Page {
   private gallery = new Gallery(byId("gallery"), byId<HTMLButtonElement>("examples"), (example) => this.load(example));
 
   constructor() {
-    new Tabs(document.querySelector(".rail") as HTMLElement, () => this.build.later());
-    this.listen();
+    const tabs = new Tabs(document.querySelector(".rail") as HTMLElement, () => this.build.later());
+    this.listen(tabs);
   }
 
   private makeBoard(): Board {
@@ -213,7 +214,7 @@ class Page {
         this.task = tasks.taskOf({ ...given, version: 0 });
       }
       this.begunWith = begunWith;
-      this.gallery.open(!kept && !given && innerHeight >= 600);
+      this.gallery.open(!kept && !given && innerHeight >= 600 && innerWidth >= 700);
     } catch {
       // The studio has ended or is busy: what is remembered is shown all the same, and what was given waits for a reload.
     }
@@ -459,6 +460,9 @@ class Page {
 
   private pose(part: number) {
     this.board.pose(part);
+    // The small pictures move in every other picture of the board.
+    this.isOdd = !this.isOdd;
+    if (this.isOdd && this.clock.playing) return;
     this.strip.pose(part);
     this.gallery.pose(part);
   }
@@ -526,7 +530,7 @@ class Page {
     byId("point-word").textContent = task.points.length === 1 ? "point" : "points";
   }
 
-  private listen() {
+  private listen(tabs: Tabs) {
     const click = (id: string, act: () => void) => byId(id).addEventListener("click", act);
     // Pressed again, a tool is laid down.
     for (const tool of TOOLS) click(`tool-${tool}`, () => this.use(this.board.tool === tool ? "draw" : tool));
@@ -546,7 +550,10 @@ class Page {
       byId("board"),
       input("file"),
       (text, name) => void this.takeText(text, name),
-      (file) => void this.photograph.take(file),
+      (file) => {
+        tabs.open("points");
+        void this.photograph.take(file);
+      },
     );
     click("fit", () => this.board.fit());
     click("nearer", () => this.board.zoom(1.25));

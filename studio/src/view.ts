@@ -79,7 +79,12 @@ export function onPath(frame: Frame, path: Box, all: Box = path): View {
   if (isWithin(all, path))
     return { x: (left + right) / 2, y: (low + high) / 2, scale: limited((FILLED * side) / size) };
   const least = limited((LEAST_FILLED * side) / size);
-  return wide.scale >= least ? wide : { x: (left + right) / 2, y: (low + high) / 2, scale: least };
+  if (wide.scale >= least) return wide;
+  // As much as there is room for, the path among it.
+  const near = (wished: number, from: number, to: number, room: number) =>
+    Math.min(Math.max(wished, to - room), from + room);
+  const [halfWide, halfHigh] = [(frame.width / 2 - RIM) / least, (frame.height / 2 - RIM) / least];
+  return { x: near(wide.x, left, right, halfWide), y: near(wide.y, low, high, halfHigh), scale: least };
 }
 
 /** The nearest view that holds everything. */
