@@ -303,13 +303,12 @@ test("how fast it answers", async () => {
   const start = Date.now();
   for (let i = 1; Date.now() - start < 3000; i += 1) {
     await page.mouse.move(handle[0], handle[1] + 25 * Math.sin(i / 12));
-    await page.waitForTimeout(8);
   }
   await page.mouse.up();
   const gaps = await page.evaluate(() => performance.getEntriesByName("re-fit").map((one) => one.duration));
   const rate = (1000 * gaps.length) / gaps.reduce((sum, gap) => sum + gap, 0);
   console.log(
-    `re-fits on the screen while dragging one of 60 points, measured in the page: ${rate.toFixed(1)} a second (median gap ${median(gaps).toFixed(0)} ms, ${gaps.length} gaps); aim 20`,
+    `re-fits on the screen while dragging one of 60 points, measured in the page: ${rate.toFixed(1)} a second (median gap ${median(gaps).toFixed(0)} ms, ${gaps.length} gaps); aim 30`,
   );
   assert.ok(gaps.length >= 2, `${gaps.length} re-fits in three seconds`);
   assert.ok(median(firsts) < 10_000);

@@ -346,7 +346,7 @@ test("each tab keeps its own drawing; another problem from the command line is a
   await first.end();
   const second = await studio(
     "--port",
-    String(port),
+    new URL(first.address).port,
     "--out",
     join(work, "results"),
     join(problems, "examples/pivot-box.toml"),

@@ -12,10 +12,12 @@ const home = house("machine");
 /** Times are asserted only where they are asked for: a busy machine is no fault of the page. */
 const timing = process.argv.includes("--timing") || process.env.TIMING !== undefined;
 
-const middle = async (page, selector) => {
-  const { x, y, width, height } = await page.locator(selector).first().boundingBox();
-  return [x + width / 2, y + height / 2];
-};
+/** Where something on the board is, asked at once: it is drawn anew while answers come. */
+const middle = (page, selector) =>
+  page.evaluate((selector) => {
+    const { x, y, width, height } = document.querySelector(selector).getBoundingClientRect();
+    return [x + width / 2, y + height / 2];
+  }, selector);
 const shot = (page, name) => shots && page.screenshot({ path: join(shots, `${name}.png`) });
 
 async function saved(page, act) {

@@ -183,7 +183,7 @@ test("points files, drawings and problems are dropped, pasted, opened; what is w
     ["bad.svg", "<svg><text>hello</text></svg>", /no/],
     ["bad.toml", 'format = 1\n[task.path]\nfile = "/etc/passwd"\n', /cannot be read here/],
     ["big.csv", `x,y\n${"1,2\n2,1\n".repeat(30_000)}`, /too long/],
-    ["many.toml", `format = 1\n[task.path]\npoints = [${"[1, 2], [2, 1], ".repeat(501)}]\n`, /1000 points/],
+    ["many.toml", `format = 1\n[task.path]\npoints = [${"[1, 2], [2, 1], ".repeat(501)}]\n`, /1002 points/],
   ]) {
     await dropped(page, name, "text/plain", text);
     await page.waitForFunction(

@@ -95,7 +95,9 @@ export class Board {
   private height = 420;
   private view: view.View = view.opening(undefined);
   private overview = new Overview();
-  private closer = element("button", { type: "button", id: "closer", hidden: "" }) as HTMLButtonElement;
+  private closer = element("button", { type: "button", id: "closer", hidden: "" }, [
+    "a closer one",
+  ]) as HTMLButtonElement;
   private task: Task | null = null;
   private moving: Moving | null = null;
   private pinned: Pinned[] = [];

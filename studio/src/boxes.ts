@@ -66,8 +66,8 @@ export function boxShapes(task: Task, toPixel: (p: Point) => Point, chosen: Corn
         class: `pivot-box ${kind}`,
         x: px(left),
         y: px(top),
-        width: px(right - left),
-        height: px(bottom - top),
+        width: px(Math.max(right - left, 0)),
+        height: px(Math.max(bottom - top, 0)),
       }),
       shape("text", { class: "number", x: px(left + 6), y: px(top + 15) }, [SAYS[kind]]),
       ...NAMES.map((_, corner) => {

@@ -35,10 +35,11 @@ export class BuildPanel {
   ]) as HTMLButtonElement;
   private nothing = element("p", { class: "note" }, ["Draw a path first: its linkage is built here."]);
   private timer = 0;
+  private isOpen = false;
   private shownOf = "";
 
   constructor(
-    private place: HTMLElement,
+    place: HTMLElement,
     private host: Host,
     /** Its number in the list, for the names of files. */
     private rank: () => string,
@@ -82,10 +83,16 @@ export class BuildPanel {
     return set;
   }
 
+  /** The tab is seen, or no longer. */
+  open(on: boolean) {
+    this.isOpen = on;
+    this.later();
+  }
+
   /** Another linkage is chosen, or another size: what is in sight is made anew when the hand rests. */
   later() {
     clearTimeout(this.timer);
-    if (this.place.offsetParent === null) return;
+    if (!this.isOpen) return;
     this.timer = setTimeout(() => void this.show(), REST) as unknown as number;
   }
 

@@ -53,7 +53,7 @@ export class ByHand {
   private title = element("strong", {}, ["Changed by hand"]);
   private quality = element("p", { class: "quality" });
   private rows = new Map<Lock, { field: HTMLInputElement | null; lock: HTMLInputElement }>();
-  private round = element("button", { type: "button", id: "hand-round" });
+  private round = element("button", { type: "button", id: "hand-round" }, ["Round to 0.5 mm"]);
 
   constructor(
     private place: HTMLElement,

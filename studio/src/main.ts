@@ -137,7 +137,7 @@ class Page {
   private gallery = new Gallery(byId("gallery"), byId<HTMLButtonElement>("examples"), (example) => this.load(example));
 
   constructor() {
-    const tabs = new Tabs(document.querySelector(".rail") as HTMLElement, () => this.build.later());
+    const tabs = new Tabs(document.querySelector(".rail") as HTMLElement, (tab) => this.build.open(tab === "build"));
     this.listen(tabs);
   }
 

@@ -12,10 +12,10 @@ export class Tabs {
   private wide = matchMedia(WIDE);
   private now: Tab = "linkages";
 
-  /** `opened` is told when another tab is seen. */
+  /** `opened` is told which tab is seen. */
   constructor(
     private rail: HTMLElement,
-    private opened: () => void,
+    private opened: (tab: Tab) => void,
   ) {
     this.buttons = TABS.map((tab) => rail.querySelector<HTMLButtonElement>(`#tab-${tab}`) as HTMLButtonElement);
     this.buttons.forEach((button, i) => {
@@ -35,7 +35,7 @@ export class Tabs {
       button.setAttribute("aria-selected", String(isShown));
       button.tabIndex = isShown ? 0 : -1;
     });
-    this.opened();
+    this.opened(shown);
   }
 
   /** The arrow keys go to the tab beside. */

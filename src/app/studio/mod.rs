@@ -7,6 +7,7 @@
 //! tab.rs          one tab's work: a mailbox of one, the answers that follow the hand, the search behind them
 //! jobs.rs         long searches that are saved; shelf.rs: the folder of results
 //! details.rs      one linkage: what the report says of it, files, comparisons
+//! workshop.rs     what a maker takes: layers and clearances, one archive of everything
 //! status.rs       how a search ended, in words
 //! routes.rs       every request that is answered; openapi.rs: the same described
 //! server.rs       the server, the page, the WebSocket
