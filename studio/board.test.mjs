@@ -18,6 +18,13 @@ const extent = (page) =>
     return [width, height];
   });
 
+/** Asks for a motor and a fair transmission angle. */
+async function asked(page) {
+  await page.locator("#type").selectOption("motor");
+  await page.locator("#transmission").fill("30");
+  await page.keyboard.press("Tab");
+}
+
 /** Draws a closed path about the middle of the board; its points are parts of 100 pixels. */
 async function drawn(page, at) {
   const box = await page.locator("#board svg").boundingBox();
@@ -59,11 +66,12 @@ test("the same stroke has the same size, whatever was answered; steps back bring
   await button(page, "Clear").click();
 
   // Steps back: the linkages and the chosen one of each.
+  await asked(page);
   const stood = [];
-  for (let k = 0; k < 3; k += 1) {
-    await drawn(page, (t) => [(0.7 + 0.12 * k) * Math.cos(t) + 0.5 * k, 0.4 * Math.sin(t) + 0.1 * Math.cos(2 * t)]);
+  for (let k = 0; k < 6; k += 1) {
+    await drawn(page, (t) => [(0.7 + 0.08 * k) * Math.cos(t) + 0.25 * k, 0.4 * Math.sin(t) + 0.1 * Math.cos(2 * t)]);
     await doing(page, "done");
-    await page.locator("#strip .pick").nth(1).click();
+    await page.locator("#strip .pick").last().click();
     stood.push([await linkages(page), await extent(page)]);
   }
   for (const [cards, size] of stood.slice(0, -1).reverse()) {
@@ -72,7 +80,7 @@ test("the same stroke has the same size, whatever was answered; steps back bring
     await doing(page, "done");
     assert.deepEqual(await linkages(page), cards, "and when the search has ended");
     assert.deepEqual(await extent(page), size);
-    assert.equal(await page.locator("#strip .pick").nth(1).getAttribute("aria-pressed"), "true");
+    assert.equal(await page.locator("#strip .pick").last().getAttribute("aria-pressed"), "true");
   }
   assert.deepEqual(said, []);
   await context.close();
@@ -83,6 +91,12 @@ test("the size is a number on the board; the longest link is a wish; a refusal c
   const { page, said, context, end } = await begun(home);
   await button(page, "Clear").click();
   assert.ok(!(await page.locator("#closed").isChecked()), "no path is closed before it is drawn");
+  assert.deepEqual(
+    [await page.locator("#type").inputValue(), await page.locator("#pivots").isChecked()],
+    ["any", false],
+    "and nothing is asked",
+  );
+  await asked(page);
   await drawn(page, egg);
   await doing(page, "done");
   const [picture, bar] = [await extent(page), await scale(page)];

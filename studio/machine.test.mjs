@@ -122,7 +122,7 @@ test("a linkage is grabbed: joints dragged, the crank turned, lengths locked and
   assert.equal(await page.locator("#play").textContent(), "Play", "it stands still");
   const value = async (name) => Number(await page.getByRole("spinbutton", { name, exact: true }).inputValue());
   const quality = () => page.locator("#by-hand .quality").textContent();
-  const before = [await quality(), await value("CP"), await value("crank AC")];
+  const before = [await quality(), await value("d, C to P"), await value("a, crank AC")];
   const _curve = await page.locator("#board .figure .curve").first().getAttribute("d");
   // P is dragged: the curve and the errors follow, the crank does not change.
   let [x, y] = await middle(page, ".grip.P");
@@ -131,22 +131,22 @@ test("a linkage is grabbed: joints dragged, the crank turned, lengths locked and
   await page.mouse.move(x + 30, y - 20, { steps: 5 });
   await page.mouse.up();
   await page.waitForFunction((before) => document.querySelector("#by-hand .quality").textContent !== before, before[0]);
-  assert.notEqual(await value("CP"), before[1]);
-  assert.equal(await value("crank AC"), before[2]);
+  assert.notEqual(await value("d, C to P"), before[1]);
+  assert.equal(await value("a, crank AC"), before[2]);
   const [px, py] = await middle(page, ".grip.P");
   assert.ok(Math.hypot(px - x - 30, py - y + 20) < 3, "P is where the hand left it");
   assert.equal(await page.locator("#board .whisker").evaluate((one) => one.getAttribute("d").length > 10), true);
   await shot(page, "grabbed");
   // A locked length stays, and its joint goes along the circle.
-  await page.getByRole("checkbox", { name: "Lock CP" }).check();
-  const cp = await value("CP");
+  await page.getByRole("checkbox", { name: "Lock d, C to P" }).check();
+  const cp = await value("d, C to P");
   [x, y] = await middle(page, ".grip.P");
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(x - 25, y - 25, { steps: 5 });
   await page.mouse.up();
   await page.waitForTimeout(200);
-  assert.ok(Math.abs((await value("CP")) - cp) < 0.01 * cp);
+  assert.ok(Math.abs((await value("d, C to P")) - cp) < 0.01 * cp);
   // The crank turns about its pivot.
   const joint = await middle(page, ".grip.C");
   [x, y] = await middle(page, ".grip.turn");
@@ -159,22 +159,23 @@ test("a linkage is grabbed: joints dragged, the crank turned, lengths locked and
   // Round lengths; a step back brings the digits back.
   await button(page, "Round to 0.5 mm").click();
   await page.waitForFunction(
-    () => document.querySelector("#by-hand input[aria-label='crank AC']").valueAsNumber % 0.5 === 0,
+    () => document.querySelector("#by-hand input[aria-label='a, crank AC']").valueAsNumber % 0.5 === 0,
   );
   await button(page, "Undo").click();
   await page.waitForFunction(
-    () => document.querySelector("#by-hand input[aria-label='crank AC']").valueAsNumber % 0.5 !== 0,
+    () => document.querySelector("#by-hand input[aria-label='a, crank AC']").valueAsNumber % 0.5 !== 0,
   );
   await button(page, "Round to 0.5 mm").click();
   await page.waitForFunction(
-    () => document.querySelector("#by-hand input[aria-label='crank AC']").valueAsNumber % 0.5 === 0,
+    () => document.querySelector("#by-hand input[aria-label='a, crank AC']").valueAsNumber % 0.5 === 0,
   );
-  const crank = await value("crank AC");
-  await page.getByRole("checkbox", { name: "Lock crank AC" }).check();
-  await page.getByRole("checkbox", { name: "Lock CP" }).uncheck();
+  const crank = await value("a, crank AC");
+  await page.getByRole("checkbox", { name: "Lock a, crank AC" }).check();
+  await page.getByRole("checkbox", { name: "Lock d, C to P" }).uncheck();
   await button(page, "Fit the rest again").click();
   await doing(page, "done");
   assert.ok(await page.locator("#by-hand").isHidden());
+  assert.match(await page.locator(".pick[aria-pressed=true] .tags").textContent(), /yours/, "fitted, and still shown");
   const text = await problemText(page);
   assert.match(text, new RegExp(`a = \\[${crank}(\\.0)?, ${crank}(\\.0)?\\]`));
   await tab(page, "build");
@@ -220,6 +221,8 @@ test("from an empty page to a laser-cut DXF of a walking leg", async () => {
   await page.locator("#kerf_mm").fill("0.15");
   await page.waitForFunction(() => document.querySelector("#panel-build .fault").textContent === "");
   await shot(page, "build");
+  const dxf = await saved(page, () => button(page, "DXF for a laser").click());
+  assert.equal(dxf.name, "walking-leg-1-plates.dxf");
   const archive = await saved(page, () => button(page, "Save everything (zip)").click());
   assert.equal(archive.name, "walking-leg-1.zip");
   const listed = execFileSync("python3", ["-m", "zipfile", "-l", archive.path], { encoding: "utf8" });
@@ -238,6 +241,11 @@ test("from an empty page to a laser-cut DXF of a walking leg", async () => {
   await doing(other.page, "done");
   assert.equal(await other.page.locator("#point-count").textContent(), "19");
   assert.match(await problemText(other.page), /name = "walking-leg"[\s\S]*pivots_in/);
+  assert.match(
+    await other.page.locator(".pick[aria-pressed=true] .tags").textContent(),
+    /yours/,
+    "the report's linkage",
+  );
   await button(other.page, "Clear").click();
   await other.page.locator("#file").setInputFiles(report);
   await other.page.waitForFunction(() => document.querySelector("#point-count").textContent === "19");
@@ -291,7 +299,7 @@ test("a limit on all of the linkage is a slider, a box shows it; a bad name is m
   await page.locator("#pivots").uncheck();
   await page.locator("#extent").fill("3");
   await doing(page, "done");
-  assert.match(await page.locator("#extent-said").textContent(), /no larger than 3 × the path/);
+  assert.match(await page.locator("#extent-said").textContent(), /at most 3 × the path \(\d+ mm\)/);
   assert.equal(await page.locator("#board .ghost:not(.absent)").count(), 1);
   assert.match(await problemText(page), /extent_max = \d/);
   await page.locator("#name").fill("a/b");

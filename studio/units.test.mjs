@@ -18,12 +18,16 @@ async function part(name) {
 }
 
 const { moved, ofStroke, ofText, segmentAt } = await part("target");
-const { drawnAnew, longestTimes, pivotsBelow, withLengthsTimes, withLongest } = await part("task");
+const { drawnAnew, extentTimes, longestTimes, nearestInstead, pivotsBelow, withExtent, withLengthsTimes, withLongest } =
+  await part("task");
 const view = await part("view");
 const words = await part("words");
 const { followed, placeOf } = await part("choice");
 const { Steps } = await part("memory");
 const { resized } = await part("boxes");
+const { nameFault } = await part("names");
+const grab = await part("grab");
+const { evenly } = await part("files");
 
 test("a moved point takes none with it of precise ones, and none is rounded that does not move", () => {
   const far = [
@@ -261,10 +265,90 @@ test("the longest link is a multiple of the path, and all lengths grow together"
   assert.equal(withLongest(shorter, 3).kept, undefined, "the usual one is not asked");
   assert.equal(longestTimes(withLongest(task, null)), null);
   assert.equal(longestTimes({ ...task, kept: { "design.a": "[1, 2]" } }), null);
+  assert.equal(
+    longestTimes({ ...task, kept: { "design.ground_angle_deg": "[1, 2]" } }),
+    3,
+    "an angle bounds no length",
+  );
+  const bounded = {
+    ...task,
+    kept: { "design.a": "[1, 2.5]", "design.B": "[[-1, 1], [0, 3]]", "design.ground_angle_deg": "[5, 6]" },
+  };
+  assert.deepEqual(withLengthsTimes(withLongest(bounded, null), 2).kept, {
+    "design.a": "[2, 5]",
+    "design.B": "[[-2, 2], [0, 6]]",
+    "design.ground_angle_deg": "[5, 6]",
+    ...(withLongest(bounded, null).kept["require.longest_max"] && { "require.longest_max": '"any"' }),
+  });
+  const small = withExtent(task, 4);
+  assert.deepEqual([small.kept["require.extent_max"], extentTimes(small), longestTimes(small)], ["20", 4, 3]);
+  assert.equal(extentTimes(withExtent(small, null)), null);
   const ten = withLengthsTimes({ ...shorter, tolerance: 0.5, pivots_in: [-1, -2, 3, 0] }, 10);
   assert.deepEqual(ten.points[2], [30, 40]);
   assert.deepEqual(ten.pivots_in, [-10, -20, 30, 0]);
   assert.deepEqual([ten.tolerance, longestTimes(ten)], [5, 2]);
   const anew = drawnAnew(ten, square, true);
   assert.equal(longestTimes(anew), 2, "of the new path");
+});
+
+test("names that the studio takes, and why others are none", () => {
+  for (const name of ["egg", "my leg 2", "Ei.v2", "com10", "größe", "_x"]) assert.equal(nameFault(name), null, name);
+  for (const [name, says] of [
+    ["", /at least one/],
+    ["a/b", /no \//],
+    [".x", /begin with \./],
+    ["-x", /begin with -/],
+    ["x.", /end with a dot/],
+    ["con", /Windows/],
+    ["NUL.txt", /Windows/],
+    ["com1", /Windows/],
+    ["x".repeat(65), /at most 64/],
+  ])
+    assert.match(nameFault(name) ?? "", says, name);
+});
+
+test("a joint is dragged as far as the locks let it, and the linkage is that of the pose", () => {
+  const pose = { A: [0, 0], B: [40, 0], C: [0, 20], D: [50, 30], P: [20, 60] };
+  const linkage = grab.ofPose(pose);
+  assert.deepEqual([linkage.a, linkage.t1, linkage.t2], [20, 1, 1]);
+  const moved = grab.dragged(pose, "C", [10, 30], new Set());
+  assert.deepEqual([moved.C, moved.D], [[10, 30], pose.D]);
+  // One locked length: along its circle. Two: not at all. A locked pivot stays.
+  const held = grab.dragged(pose, "C", [30, 40], new Set(["a"]));
+  assert.ok(Math.abs(Math.hypot(...held.C) - 20) < 1e-9 && held.C[0] > 0);
+  assert.deepEqual(grab.dragged(pose, "C", [30, 40], new Set(["a", "b"])).C, pose.C);
+  assert.deepEqual(grab.dragged(pose, "A", [5, 5], new Set(["A"])).A, pose.A);
+  assert.equal(grab.ofPose({ ...pose, P: [20, -60] }).t2, -1);
+  const round = grab.roundedTo({ ...linkage, a: 0.1, b: 51.2345 }, 0.5, new Set(["A"]));
+  assert.deepEqual([round.a, round.b, round.A], [0.5, 51, [0, 0]]);
+  assert.deepEqual(grab.keptBy(linkage, new Set(["a", "B", "ground"])), {
+    "design.a": "[20, 20]",
+    "design.B": "[[40, 40], [0, 0]]",
+    "design.ground": "[40, 40]",
+  });
+});
+
+test("more points than can be searched become fewer along the same path; an exact wish that fails offers the nearest", () => {
+  const points = Array.from({ length: 1500 }, (_, i) => [Math.cos(i / 239), Math.sin(i / 239)]);
+  const fewer = evenly({ name: "x", points, closed: false, types: [], seed: 1, weights: points.map(() => 1) });
+  assert.deepEqual([fewer.points.length, fewer.weights], [200, undefined]);
+  for (const [x, y] of fewer.points) assert.ok(Math.abs(Math.hypot(x, y) - 1) < 1e-4);
+  assert.equal(evenly({ name: "x", points: points.slice(0, 1000), closed: false, types: [], seed: 1 }), null);
+  const nine = { name: "x", points: points.slice(0, 9), closed: true, types: [], seed: 1, method: "continuation" };
+  const answer = { doing: "done", candidates: [{ accepted: false }] };
+  const { task, said } = nearestInstead(nine, answer);
+  assert.ok(task.method === undefined && task.tolerance > 0 && said.includes("instead of exactly"));
+  assert.equal(nearestInstead(nine, { ...answer, candidates: [{ accepted: true }] }), null);
+  assert.equal(nearestInstead({ ...nine, method: undefined }, answer), null);
+});
+
+test("a linkage keeps its number while it follows", () => {
+  const shown = (number, x) => ({
+    number,
+    rms: 1,
+    linkage: { A: [x, 0], B: [100, 0], a: 20, b: 80, c: 60, d: 40, e: 10, t1: 1, t2: 1 },
+  });
+  const choice = { candidate: shown(7, 0) };
+  assert.equal(followed(choice, [shown(8, 1), shown(7, 60)]).candidate.number, 7);
+  assert.equal(followed(choice, [shown(8, 1), shown(9, 90)]).candidate.number, 8, "else the nearest");
 });

@@ -1,69 +1,9 @@
 // What the page asks of the studio over HTTP: see /openapi.json.
 
-import type { Point, Reading, Shown, Solution, Task } from "./messages";
+import type { Reading, Shown, Solution, Task } from "./messages";
+import type { Details, JobList, JobShown, Opened, Source } from "./wire";
 
-export interface JobShown {
-  name: string;
-  state: "running" | "done" | "stopped" | "broken-off" | "elsewhere" | "failed" | "unreadable";
-  said: string;
-  resumable: boolean;
-  progress?: {
-    phase: string;
-    evaluations: number;
-    budget: number;
-    rate: number;
-    best_rms?: number;
-    accepted: boolean;
-    elapsed_s: number;
-    left_s?: number;
-  };
-  result?: {
-    points: number;
-    unit?: string;
-    seed: number;
-    method: string;
-    candidates: number;
-    accepted: number;
-    evaluations: number;
-    reproducible: boolean;
-    version: string;
-    best?: { rms: number; max: number; type: string; transmission_deg: number; accepted: boolean };
-  };
-}
-
-export interface JobList {
-  folder: string;
-  jobs: JobShown[];
-  more: number;
-}
-
-export interface Opened {
-  ask?: Task & { version?: number };
-  why_not?: string;
-  name: string;
-  unit?: string;
-  points: Point[];
-  closed: boolean;
-  candidates: Shown[];
-  files: string[];
-}
-
-export type Source =
-  | { job: { name: string; rank: number } }
-  | { drawn: { ask: Task; linkage: Shown["linkage"]; crank_deg: number[]; t1_at: number[] } };
-
-export interface Details {
-  name: string;
-  unit?: string;
-  points: Point[];
-  closed: boolean;
-  tolerance?: number[];
-  transmission_deg_min?: number;
-  candidates: number;
-  shown: Shown;
-  summary: string;
-  words: string;
-}
+export type { Details, JobList, JobShown, Opened, Source };
 
 export interface Compared {
   unit: string | null;

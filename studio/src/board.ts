@@ -340,7 +340,9 @@ export class Board {
     const y = this.height - 14;
     const longest = task.points.length > 2 ? longestMax(task) : null;
     this.scaleBar.replaceChildren(...this.bar(false, length, y, ""));
-    if (longest !== null) this.scaleBar.append(...this.bar(true, longest, y - 22, "longest link "));
+    // A limit that is longer than the board is no ruler.
+    if (longest !== null && longest * this.view.scale < this.width - 28)
+      this.scaleBar.append(...this.bar(true, longest, y - 22, "limit of the longest link: "));
     // Another view of one that stands still.
     this.pose(this.part);
   }
@@ -357,15 +359,17 @@ export class Board {
     return setAll(this.earth, { d: `M0 ${y}H${this.width}${hatches.join("")}` });
   }
 
-  /** The box, as wide as high, that a limit on the extent leaves, around what is shown. */
+  /** The box that a limit on the extent leaves to what is shown. */
   private drawGhost(task: Task) {
     const times = task.points.length > 2 ? extentTimes(task) : null;
     this.ghost.classList.toggle("absent", times === null);
     const around = (this.moving?.box() as Box | undefined) ?? boxOf(task.points);
     if (times === null || !around) return;
     const [x, y] = this.toPixel([(around[0] + around[2]) / 2, (around[1] + around[3]) / 2]);
-    const side = times * sizeOf(task.points) * Math.SQRT1_2 * this.view.scale;
-    setAll(this.ghost, { x: px(x - side / 2), y: px(y - side / 2), width: px(side), height: px(side) });
+    // As its own box, as large as the limit allows.
+    const [w, h] = [around[2] - around[0], around[3] - around[1]];
+    const by = (times * sizeOf(task.points) * this.view.scale) / (Math.hypot(w, h) || 1);
+    setAll(this.ghost, { x: px(x - (w * by) / 2), y: px(y - (h * by) / 2), width: px(w * by), height: px(h * by) });
   }
 
   /** Where the joints stand now. */

@@ -7,9 +7,9 @@ import type { Host } from "./desk";
 
 /** Sizes: the setting of the studio, its label, and what stands in an empty field. */
 const SIZES: [string, string, string][] = [
-  ["thickness_mm", "Thickness", "3/4 of the hole"],
+  ["thickness_mm", "Thickness", "¾ of hole"],
   ["hole_mm", "Holes", "4"],
-  ["margin_mm", "Material around a hole", "as the hole"],
+  ["margin_mm", "Material around a hole", "as hole"],
   ["kerf_mm", "Kerf of the tool", "0"],
 ];
 /** Milliseconds after the last change of a size before the plates are drawn anew. */
@@ -30,19 +30,24 @@ export class BuildPanel {
   private plates = element("div", { id: "plates", role: "img", "aria-label": "The plates to cut", hidden: "" });
   private fault = element("p", { class: "fault", role: "alert" });
   private layers = element("pre", { id: "layers", tabindex: "0", "aria-label": "Layers and clearances" });
+  private dxf = element("button", { type: "button", id: "save-dxf" }, ["DXF for a laser"]) as HTMLButtonElement;
   private save = element("button", { type: "button", id: "save-archive" }, [
     "Save everything (zip)",
   ]) as HTMLButtonElement;
+  private legs = element("p", { class: "note", hidden: "" }, [
+    "These are the plates of one leg: cut them once for each leg.",
+  ]);
   private nothing = element("p", { class: "note" }, ["Draw a path first: its linkage is built here."]);
   private timer = 0;
   private isOpen = false;
   private shownOf = "";
 
   constructor(
-    place: HTMLElement,
+    private place: HTMLElement,
     private host: Host,
     /** Its number in the list, for the names of files. */
     private rank: () => string,
+    private isWalker: () => boolean,
   ) {
     const rows = SIZES.map(([key, label, usual]) => {
       const field = element("input", {
@@ -69,16 +74,23 @@ export class BuildPanel {
       sheet,
       this.fault,
       this.plates,
-      this.save,
+      this.legs,
+      element("div", { class: "row" }, [this.dxf, this.save]),
       element("details", { open: "" }, [element("summary", {}, ["Layers and clearances"]), this.layers]),
     );
-    this.save.addEventListener("click", () => void this.archive());
+    const sizes = ["hole_mm", "margin_mm", "kerf_mm", "sheet_mm"];
+    this.dxf.addEventListener("click", () => void this.file("dxf-plates", "-plates.dxf", sizes));
+    this.save.addEventListener("click", () => void this.file("archive", ".zip"));
   }
 
   private set(): Record<string, string> {
     const set: Record<string, string> = {};
     for (const [key, field] of this.fields) if (field.value !== "") set[key] = field.value;
     const [width, height] = this.sheet.map((field) => field.value);
+    for (const field of this.sheet) {
+      const isMissing = field.value === "" && width + height !== "";
+      field.setAttribute("aria-invalid", String(isMissing));
+    }
     if (width !== "" && height !== "") set.sheet_mm = `${width}x${height}`;
     return set;
   }
@@ -98,7 +110,9 @@ export class BuildPanel {
 
   private async show() {
     const chosen = this.host.chosen();
-    for (const part of [this.plates, this.save, this.layers.parentElement as HTMLElement]) part.hidden = !chosen;
+    this.legs.hidden = !chosen || !this.isWalker();
+    for (const part of [this.plates, this.dxf, this.save, this.layers.parentElement as HTMLElement])
+      part.hidden = !chosen;
     this.nothing.hidden = chosen !== null;
     if (!chosen) return;
     const [of, set] = [api.drawn(chosen), this.set()];
@@ -106,33 +120,48 @@ export class BuildPanel {
     if (key === this.shownOf) return;
     this.shownOf = key;
     try {
-      const fits = (keys: string[]) => Object.fromEntries(Object.entries(set).filter(([name]) => keys.includes(name)));
       const plates = await api.exported(of, "svg-plates", {
-        set: fits(["hole_mm", "margin_mm", "kerf_mm", "sheet_mm"]),
+        set: only(set, ["hole_mm", "margin_mm", "kerf_mm", "sheet_mm"]),
       });
-      const layers = await api.exported(of, "layers", { set: fits(["hole_mm", "margin_mm"]) });
+      const layers = await api.exported(of, "layers", { set: only(set, ["hole_mm", "margin_mm"]) });
       const [picture, text] = await Promise.all([plates.text(), layers.text()]);
       if (this.shownOf !== key) return;
       this.fault.textContent = "";
+      this.place.classList.remove("stale");
       this.plates.replaceChildren(new DOMParser().parseFromString(picture, "image/svg+xml").documentElement);
       this.layers.textContent = text;
-      this.save.disabled = false;
+      for (const button of [this.dxf, this.save]) button.disabled = false;
     } catch (error) {
       if (this.shownOf !== key) return;
-      this.fault.textContent = `So it cannot be built: ${api.wordsOf(error)}`;
-      this.save.disabled = true;
+      this.fault.textContent = `So it cannot be built: ${inLabels(api.wordsOf(error))}`;
+      this.place.classList.add("stale");
+      for (const button of [this.dxf, this.save]) button.disabled = true;
     }
   }
 
-  private async archive() {
+  /** Saves a format with the sizes that it takes; all of them, if none are named. */
+  private async file(format: string, ending: string, sizes?: string[]) {
     const chosen = this.host.chosen();
     if (!chosen) return;
-    const name = `${chosen.task.name}-${this.rank()}`.slice(-64);
+    const name = `${chosen.task.name}-${this.rank()}`.slice(-50);
+    const set = sizes ? only(this.set(), sizes) : this.set();
+    const more = sizes ? { set } : { set, name };
     try {
-      api.saved(await api.exported(api.drawn(chosen), "archive", { set: this.set(), name }), `${name}.zip`);
-      this.host.say(`Saved as ${name}.zip.`);
+      api.saved(await api.exported(api.drawn(chosen), format, more), `${name}${ending}`);
+      this.host.say(`Saved as ${name}${ending}.`);
     } catch (error) {
       this.host.say(`This cannot be saved: ${api.wordsOf(error)}`, true);
     }
   }
 }
+
+/** The studio's words with the labels of the fields in place of its keys. */
+function inLabels(text: string): string {
+  let said = text.replaceAll("sheet_mm", "Sheet").replaceAll("gap_mm", "the gap between plates");
+  for (const [key, label] of SIZES) said = said.replaceAll(`\`${key}\``, label).replaceAll(key, label);
+  return said;
+}
+
+/** The entries under these keys. */
+const only = (set: Record<string, string>, keys: string[]) =>
+  Object.fromEntries(Object.entries(set).filter(([name]) => keys.includes(name)));

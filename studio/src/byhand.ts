@@ -20,11 +20,11 @@ import { sizeOf } from "./task";
 import { nearnessInWords, SIGNS, transmissionInWords } from "./words";
 
 const NAMES: Record<Lock, string> = {
-  a: "crank AC",
-  b: "coupler CD",
-  c: "follower BD",
-  d: "CP",
-  e: "DP",
+  a: "a, crank AC",
+  b: "b, coupler CD",
+  c: "c, follower BD",
+  d: "d, C to P",
+  e: "e, D to P",
   ground: "ground AB",
   A: "pivot A",
   B: "pivot B",
@@ -39,7 +39,7 @@ export interface HandHost {
   /** A step that can be undone is about to be made. */
   note(): void;
   /** Searches anew with what is locked. */
-  fit(kept: Record<string, string>): void;
+  fit(kept: Record<string, string>, from: Linkage): void;
   say(text: string): void;
 }
 
@@ -50,7 +50,9 @@ export class ByHand {
   private isAsking = false;
   /** Counts what was taken into the hand: an answer about the one before is late. */
   private taken = 0;
-  private title = element("strong", {}, ["Changed by hand"]);
+  private title = element("strong");
+  /** Whether it is another one than was taken. */
+  isChanged = false;
   private quality = element("p", { class: "quality" });
   private rows = new Map<Lock, { field: HTMLInputElement | null; lock: HTMLInputElement }>();
   private round = element("button", { type: "button", id: "hand-round" }, ["Round to 0.5 mm"]);
@@ -108,16 +110,18 @@ export class ByHand {
   }
 
   /** Takes a linkage into the hand; null lets it go. */
-  take(shown: Shown | null) {
+  take(shown: Shown | null, isChanged = false) {
     this.shown = shown;
     this.wanted = null;
     this.taken += 1;
+    this.isChanged = isChanged;
     if (!shown) {
       this.locks.clear();
       for (const { lock } of this.rows.values()) lock.checked = false;
     }
     this.show();
     this.host.changed();
+    if (shown) this.place.scrollIntoView({ block: "nearest" });
   }
 
   /** A joint is dragged from a pose to a place. */
@@ -145,6 +149,7 @@ export class ByHand {
       try {
         const shown = await api.judged(this.host.task(), linkage);
         if (taken !== this.taken || !this.shown) continue;
+        this.isChanged ||= JSON.stringify(shown.linkage) !== JSON.stringify(this.shown.linkage);
         this.shown = shown;
         this.show();
         this.host.changed();
@@ -165,10 +170,11 @@ export class ByHand {
   private fit() {
     if (!this.shown) return;
     if (this.locks.size === 0) return this.host.say("Lock what is to stay: the rest is fitted again around it.");
-    const kept = keptBy(this.shown.linkage, this.locks);
+    const { linkage } = this.shown;
+    const kept = keptBy(linkage, this.locks);
     this.host.note();
     this.take(null);
-    this.host.fit(kept);
+    this.host.fit(kept, linkage);
   }
 
   private show() {
@@ -176,6 +182,7 @@ export class ByHand {
     this.place.hidden = !shown;
     if (!shown) return;
     const { unit, points } = this.host.task();
+    this.title.textContent = this.isChanged ? "Changed by hand" : "In your hand";
     this.round.textContent = unit === "in" ? "Round to 1/64 in" : "Round to 0.5 mm";
     const graded = [nearnessInWords(shown, sizeOf(points)), transmissionInWords(shown.transmission_deg)];
     this.quality.replaceChildren(

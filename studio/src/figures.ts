@@ -100,7 +100,7 @@ function keyed(shown: Shown, points: Point[]): Moving {
 
 /** The parts of a linkage in a drawing. */
 export class Figure {
-  readonly group = shape("g", { class: "figure" });
+  readonly group = shape("g", { class: "figure absent" });
   private curve = shape("path", { class: "curve" });
   private ground = shape("path", { class: "ground" });
   private coupler = shape("path", { class: "coupler" });

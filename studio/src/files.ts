@@ -1,6 +1,7 @@
 // Files and texts that are dropped, pasted or chosen: what they are, and how the studio reads them.
 
 import * as api from "./api";
+import type { Linkage } from "./grab";
 import type { Point, Reading, Task } from "./messages";
 import { ofText, resampled } from "./target";
 import { roundTo, settled, sizeOf, taskOf, withPoints } from "./task";
@@ -9,7 +10,7 @@ import { roundTo, settled, sizeOf, taskOf, withPoints } from "./task";
 const MOST = 200_000;
 
 /** A report's problem stands in an element of its own; the rest of it, which may be long, is not sent. */
-const REPORT = /<script type="application\/json" id="problem">[^<]*<\/script>/g;
+const REPORT = /<script type="application\/json" id="(problem|linkage)">[^<]*<\/script>/g;
 const MOST_OF_A_REPORT = 50_000_000;
 
 export type Kind = "csv" | "svg" | "problem" | "report";
@@ -32,9 +33,9 @@ export async function taskOfText(
   name: string,
   task: Task,
   samples?: number,
-): Promise<{ task: Task; said: string } | string> {
+): Promise<{ task: Task; said: string; from?: Linkage } | string> {
   const kind = kindOf(text, name);
-  if (kind === "report") text = text.match(REPORT)?.at(-1) ?? "";
+  if (kind === "report") text = (text.match(REPORT) ?? []).slice(-2).join("");
   if (text.length > MOST) return `this is too long: ${MOST} characters at most are read`;
   if (!kind) {
     const points = ofText(text);
@@ -51,13 +52,13 @@ export async function taskOfText(
   }
   const { ask, whole, warnings } = reading;
   const said = [`${ask.points.length} points`, ...warnings].join(". ");
-  if (whole) return { task: taskOf(ask), said: `The problem ${ask.name}: ${said}` };
+  if (whole) return { task: taskOf(ask), from: ask.from, said: `The problem ${ask.name}: ${said}` };
   const { tolerances, weights, timing, unit } = ask;
   const next: Task = {
-    ...withPoints({ ...task, timing: undefined }, ask.points as Point[], kind === "svg" ? ask.closed : task.closed),
+    ...withPoints({ ...task, timing: undefined }, ask.points, kind === "svg" ? ask.closed === true : task.closed),
     weights,
     timing,
-    name: ask.name,
+    name: ask.name ?? task.name,
     source: undefined,
   };
   if (tolerances) Object.assign(next, { tolerances, tolerance: undefined });

@@ -49,7 +49,7 @@ function inWords(key: string, from: Value, to: Value, unit: string | undefined):
 /** The task with a change made. */
 export function changed(task: Task, key: string, to: Value): Task {
   if (key === "task.path.tolerance") return { ...task, tolerance: to as number, tolerances: undefined };
-  if (key === "require.type") return { ...task, types: to as string[] };
+  if (key === "require.type") return { ...task, types: to as Task["types"] };
   if (key.startsWith("require.") && !UNSHOWN.includes(key) && task.kept?.[key] === undefined)
     return { ...task, [key.slice(8)]: to };
   // JSON of numbers, words and lists of them is TOML too.

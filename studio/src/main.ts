@@ -14,10 +14,11 @@ import { type Moving, movingOf } from "./figures";
 import { evenly, takesText, taskOfText, watchFiles } from "./files";
 import { changing } from "./focus";
 import { Gallery } from "./gallery";
+import type { Linkage } from "./grab";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
 import { remember, remembered, Steps } from "./memory";
-import type { Answer, Point, Shown, Solution, Task } from "./messages";
+import type { Answer, AnyAsk, Point, Shown, Solution, Task } from "./messages";
 import { nameFault } from "./names";
 import { Nine } from "./nine";
 import { Pace } from "./pace";
@@ -30,7 +31,7 @@ import { Stays } from "./stays";
 import { inWords, isExact, Strip } from "./strip";
 import { SureChip } from "./sure";
 import { Table } from "./table";
-import { Tabs } from "./tabs";
+import { Tabs, WIDE } from "./tabs";
 import { moved } from "./target";
 import * as tasks from "./task";
 import { type Placed, Underlay } from "./underlay";
@@ -52,7 +53,7 @@ interface State {
 const REST = 300;
 
 const TOOLS: Tool[] = ["draw", "points", "grab", "pivots_in", "footprint_in", "photo-move", "photo-scale"];
-/** What a tool is for, said when it is taken. */
+/** What a tool is for, said when it is taken for the first time. */
 const TOOL_SAID: Partial<Record<Tool, string>> = {
   points: "A click on the path puts a point there, a click beside it one behind the last. Clear begins anew.",
   grab: "Drag a joint of the linkage, or the middle of its crank to turn it. Drag elsewhere to move the board.",
@@ -73,6 +74,8 @@ class Page {
   /** The linkage that the board has shown last. */
   private onBoard: Shown | null = null;
   private hints = true;
+  /** Whether the linkage moved when it was taken into the hand. */
+  private wasPlaying = false;
   private isOdd = false;
   private begunWith = "null";
   private filling: ReturnType<typeof setTimeout> | undefined;
@@ -130,15 +133,20 @@ class Page {
     task: () => this.task,
     changed: () => this.handChanged(),
     note: () => this.note(),
-    fit: (kept) => this.fitAgain(kept),
+    fit: (kept, from) => this.fitAgain(kept, from),
     say: (text) => this.said.refuse(text),
   });
-  private build = new BuildPanel(byId("build"), this.desk.host, () => this.rank());
+  private build = new BuildPanel(
+    byId("build"),
+    this.desk.host,
+    () => this.rank(),
+    () => this.board.isWalker,
+  );
+  private tabs = new Tabs(document.querySelector(".rail") as HTMLElement, (tab) => this.build.open(tab === "build"));
   private gallery = new Gallery(byId("gallery"), byId<HTMLButtonElement>("examples"), (example) => this.load(example));
 
   constructor() {
-    const tabs = new Tabs(document.querySelector(".rail") as HTMLElement, (tab) => this.build.open(tab === "build"));
-    this.listen(tabs);
+    this.listen();
   }
 
   private makeBoard(): Board {
@@ -184,8 +192,9 @@ class Page {
   }
 
   /** Takes another problem, and brings its path into the middle. */
-  private open(task: Task, isWalker = false) {
-    this.replace(task, { fresh: true });
+  private open(task: Task, isWalker = false, from?: Linkage) {
+    this.board.selected = -1;
+    this.replace(task, { fresh: true, from });
     this.walk(isWalker);
     this.board.fitPath(task);
   }
@@ -198,6 +207,7 @@ class Page {
   async begin() {
     const kept = remembered();
     let view = kept?.view;
+    let from: Linkage | undefined;
     let isWalker = kept ? kept.isWalker === true : EXAMPLES[0].isWalker === true;
     if (kept) {
       ({ task: this.task, hints: this.hints, begunWith: this.begunWith } = kept);
@@ -206,12 +216,13 @@ class Page {
     }
     try {
       const begunWith = await api.beginning();
-      const given = JSON.parse(begunWith) as Task | null;
+      const given = JSON.parse(begunWith) as AnyAsk | null;
       if (given && this.begunWith !== begunWith) {
         if (kept) this.note();
         view = undefined;
         isWalker = false;
-        this.task = tasks.taskOf({ ...given, version: 0 });
+        this.task = tasks.taskOf(given);
+        from = given.from;
       }
       this.begunWith = begunWith;
       this.gallery.open(!kept && !given && innerHeight >= 600 && innerWidth >= 700);
@@ -233,13 +244,13 @@ class Page {
           void api.whyClosed().then((why) => document.body.dataset.connected === "false" && this.say(why));
       },
     );
-    this.put(this.task, {});
+    this.put(this.task, from ? { fresh: true, from } : {});
     void this.desk.begin();
     this.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
   }
 
   /** Another task in place of the one that stands, which can be undone. */
-  private replace(task: Task, how: { fresh?: boolean } = {}) {
+  private replace(task: Task, how: { fresh?: boolean; from?: Linkage } = {}) {
     if (JSON.stringify(task) !== JSON.stringify(this.task)) this.note();
     this.put(task, how);
   }
@@ -260,6 +271,7 @@ class Page {
   private use(tool: Tool) {
     this.board.tool = tool;
     const said = TOOL_SAID[tool];
+    delete TOOL_SAID[tool];
     if (said && this.task.points.length > 0) this.desk.say(said);
     for (const button of document.querySelectorAll("[id^=tool-]"))
       button.setAttribute("aria-pressed", String(button.id === `tool-${tool}`));
@@ -271,11 +283,13 @@ class Page {
   private grab() {
     const chosen = this.chosen();
     if (!chosen) return this.desk.say("There is no linkage to grab yet.");
+    this.wasPlaying ||= this.clock.playing;
     this.play(false);
     if (!this.byHand.shown) {
       this.note();
       this.byHand.take(chosen.shown);
     }
+    if (!matchMedia(WIDE).matches) this.tabs.open("linkages");
   }
 
   /** Another linkage is in the hand, or none any more: the crank stays where it stands. */
@@ -285,6 +299,8 @@ class Page {
     const { shown } = this.byHand;
     if (!shown) {
       if (this.board.tool === "grab") this.use("draw");
+      if (this.wasPlaying) this.play(true);
+      this.wasPlaying = false;
     } else if (before) {
       const { A } = shown.linkage;
       this.turn((Math.atan2(before.C[1] - A[1], before.C[0] - A[0]) * 180) / Math.PI);
@@ -301,10 +317,12 @@ class Page {
   }
 
   /** Searches with what is locked of the linkage in the hand. */
-  private fitAgain(kept: Record<string, string>) {
+  private fitAgain(kept: Record<string, string>, from: Linkage) {
     const others = Object.entries(this.task.kept ?? {}).filter(([key]) => !key.startsWith("design."));
-    this.put({ ...this.task, kept: { ...Object.fromEntries(others), ...kept } }, { fresh: true });
-    this.say("The rest is fitted again. What is locked stands under Wishes, kept from the problem file.");
+    // A bounded length ends the default of the longest link: on the page that limit stays.
+    const task = tasks.withLongestSaid({ ...this.task, kept: Object.fromEntries(others) });
+    this.put({ ...task, kept: { ...task.kept, ...kept } }, { fresh: true, from });
+    this.desk.say("Your linkage is fitted again; others are searched beside it. What is locked stands under Wishes.");
   }
 
   private showUnderlay() {
@@ -323,18 +341,19 @@ class Page {
       );
       return this.open(fewer);
     }
-    this.open(read.task);
+    this.open(read.task, false, read.from);
     return this.say(`Taken: ${read.said}.`);
   }
 
   /** Takes a task: shown, remembered, sent. */
-  private put(edited: Task, how: { moving?: boolean; fresh?: boolean }) {
+  private put(edited: Task, how: { moving?: boolean; fresh?: boolean; from?: Linkage }) {
     const task = tasks.withoutStale(this.task, edited);
     if (edited.expect && !task.expect)
       this.desk.say(
         "The figures published for this problem hold for it as it was opened: they are let go. Undo brings them back.",
       );
     this.task = task;
+    this.size.show(task);
     this.version += 1;
     const short = task.points.length < 3;
     if (how.fresh || short) {
@@ -343,6 +362,7 @@ class Page {
       this.onBoard = null;
       this.sure.show(null, "");
       if (this.byHand.shown) this.byHand.take(null);
+      if (how.from) this.showing.expectOwn(this.version);
     }
     this.stays.show(null);
     const held = how.moving ? this.showing.hold() : undefined;
@@ -368,6 +388,7 @@ class Page {
       version: this.version,
       ...(how.moving ? { moving: true, held } : {}),
       ...(fresh ? { fresh } : {}),
+      ...(how.from ? { from: how.from } : {}),
     });
   }
 
@@ -419,9 +440,9 @@ class Page {
     return this.byHand.solution() ?? this.showing.chosen(this.task);
   }
 
-  /** Its number in the list, for the names of files. */
+  /** Its number in the list, for the names of files: one in the hand that was not changed has it too. */
   private rank(): string {
-    if (this.byHand.shown) return "by-hand";
+    if (this.byHand.isChanged) return "by-hand";
     const [place, found] = [this.showing.place(), this.showing.candidates().length];
     return place < found ? String(place + 1) : `pinned-${place - found + 1}`;
   }
@@ -432,7 +453,8 @@ class Page {
     this.moving = [...all, ...(inHand ? [inHand] : [])].map(({ shown, task }) => movingOf(shown, task.points));
     this.drawBoard();
     const cards = this.moving.slice(0, all.length);
-    this.strip.show(cards, all, this.showing.candidates().length, inHand ? -1 : this.showing.place());
+    const { own } = this.showing;
+    this.strip.show(cards, all, this.showing.candidates().length, inHand ? -1 : this.showing.place(), own);
     byId("nothing").hidden = all.length > 0;
     const { answer } = this.showing;
     this.helps.show(answer?.relaxations ?? [], this.task.unit, tasks.nearestInstead(this.task, answer));
@@ -460,6 +482,7 @@ class Page {
 
   private pose(part: number) {
     this.board.pose(part);
+    if (document.activeElement !== input("turn")) input("turn").value = part.toFixed(3);
     // The small pictures move in every other picture of the board.
     this.isOdd = !this.isOdd;
     if (this.isOdd && this.clock.playing) return;
@@ -518,7 +541,6 @@ class Page {
     input("closed").checked = task.closed;
     for (const unit of document.querySelectorAll(".unit")) unit.textContent = task.unit ?? "";
     fillRequirements(task);
-    this.size.show(task);
     this.kept.show(task);
     this.table.show(task);
     const text = this.coordinates;
@@ -530,15 +552,19 @@ class Page {
     byId("point-word").textContent = task.points.length === 1 ? "point" : "points";
   }
 
-  private listen(tabs: Tabs) {
+  private listen() {
     const click = (id: string, act: () => void) => byId(id).addEventListener("click", act);
     // Pressed again, a tool is laid down.
     for (const tool of TOOLS) click(`tool-${tool}`, () => this.use(this.board.tool === tool ? "draw" : tool));
     click("undo", () => this.back("undo"));
     click("redo", () => this.back("redo"));
     click("clear", () => {
-      this.replace(tasks.withPoints(this.task, [], false), { fresh: true });
+      // Everything: the path and what was asked of it. Undo brings it back.
+      this.replace(tasks.pathAlone({ ...this.task, name: "drawing", source: undefined, points: [], closed: false }), {
+        fresh: true,
+      });
       this.walk(false);
+      this.gallery.open(false);
       this.board.open(this.task.unit);
     });
     listenToRequirements(
@@ -551,7 +577,7 @@ class Page {
       input("file"),
       (text, name) => void this.takeText(text, name),
       (file) => {
-        tabs.open("points");
+        this.tabs.open("points");
         void this.photograph.take(file);
       },
     );
@@ -559,6 +585,10 @@ class Page {
     click("nearer", () => this.board.zoom(1.25));
     click("farther", () => this.board.zoom(0.8));
     click("play", () => this.play(!this.clock.playing));
+    input("turn").addEventListener("input", () => {
+      this.play(false);
+      this.clock.set(input("turn").valueAsNumber);
+    });
     input("walker").addEventListener("change", () => {
       this.note();
       this.walk(input("walker").checked);
@@ -568,9 +598,10 @@ class Page {
     click("hide-hints", () => {
       this.hints = false;
       changing(
-        byId("hints"),
+        byId("gallery"),
         () => {
           byId("hints").hidden = true;
+          this.gallery.open(false);
         },
         this.board.svg,
       );
@@ -638,7 +669,8 @@ class Page {
     this.put(then.task, {});
     const { answer, chosen } = then;
     if (answer && answer.candidates.length > 0) this.showing.restore(answer, this.version, chosen);
-    if (then.byHand || this.byHand.shown) this.byHand.take(then.byHand);
+    if (then.byHand || this.byHand.shown) this.byHand.take(then.byHand, then.byHand !== null);
+    if (then.byHand && this.board.tool !== "grab") this.use("grab");
     this.draw();
   }
 

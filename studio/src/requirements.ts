@@ -1,7 +1,7 @@
 // Requirements and what stands beside the points, as controls with units and plain words.
 
 import { KINDS } from "./boxes";
-import type { Box, Task } from "./messages";
+import type { Box, Task, Unit } from "./messages";
 import { nameFault } from "./names";
 import {
   canBeExact,
@@ -11,6 +11,7 @@ import {
   longestTimes,
   pivotsBelow,
   settled,
+  sizeOf,
   spaceAround,
   withExtent,
   withLongest,
@@ -28,11 +29,11 @@ const ANY_SIZE = 10;
 
 /** The sliders of sizes, as multiples of the path. */
 const SIZES = [
-  { id: "longest", of: longestTimes, set: withLongest, any: "of any length", most: "no longer than" },
-  { id: "extent", of: extentTimes, set: withExtent, any: "of any size", most: "as it moves no larger than" },
+  { id: "longest", of: longestTimes, set: withLongest, any: "any length", most: "at most" },
+  { id: "extent", of: extentTimes, set: withExtent, any: "any size", most: "at most" },
 ] as const;
 
-const TYPES: Record<string, string[]> = {
+const TYPES: Record<string, Task["types"]> = {
   any: [],
   motor: ["crank-rocker", "double-crank"],
   "crank-rocker": ["crank-rocker"],
@@ -82,7 +83,7 @@ export function listenToRequirements(now: () => Task, change: (task: Task) => vo
   for (const [id, usual] of CHECKS) on(id, () => ({ ...now(), [id]: input(id).checked ? usual : "any" }));
   on("over", () => ({ ...now(), transmission_over: (select("over").value || undefined) as Task["transmission_over"] }));
   on("direction", () => ({ ...now(), direction: select("direction").value as Task["direction"] }));
-  on("unit", () => ({ ...now(), unit: select("unit").value || undefined }));
+  on("unit", () => ({ ...now(), unit: (select("unit").value || undefined) as Unit | undefined }));
   on("name", () => {
     const name = input("name").value.trim();
     const fault = nameFault(name);
@@ -106,14 +107,16 @@ export function listenToRequirements(now: () => Task, change: (task: Task) => vo
   for (const size of SIZES) {
     const slider = input(size.id);
     const times = () => (slider.valueAsNumber >= ANY_SIZE ? null : slider.valueAsNumber);
-    slider.addEventListener("input", () => tellSize(size, times()));
+    slider.addEventListener("input", () => tellSize(size, times(), now()));
     on(size.id, () => size.set(now(), times()));
   }
   on("exact", () => ({ ...now(), method: input("exact").checked ? EXACT : undefined }));
 }
 
-function tellSize({ id, any, most }: (typeof SIZES)[number], times: number | null) {
-  const text = times === null ? any : `${most} ${Number(times.toPrecision(3))} × the path`;
+function tellSize({ id, any, most }: (typeof SIZES)[number], times: number | null, { points, unit }: Task) {
+  const length = Number(((times ?? 0) * sizeOf(points)).toPrecision(3));
+  const text =
+    times === null ? any : `${most} ${Number(times.toPrecision(3))} × the path (${length}${unit ? ` ${unit}` : ""})`;
   byId(`${id}-said`).textContent = text;
   input(id).setAttribute("aria-valuetext", text);
 }
@@ -144,7 +147,7 @@ export function fillRequirements(task: Task) {
   for (const size of SIZES) {
     const times = size.of(task);
     set(size.id, times ?? ANY_SIZE);
-    tellSize(size, times);
+    tellSize(size, times, task);
   }
   input("tolerance").disabled = task.tolerances !== undefined;
   input("tolerance").placeholder = task.tolerances ? "in the table of points" : "any";

@@ -76,7 +76,7 @@ export class Share {
     place: HTMLElement,
     private host: Host,
   ) {
-    const copy = element("button", { type: "button", id: "copy-link" }, ["Copy a link"]);
+    const copy = element("button", { type: "button", id: "copy-link" }, ["Copy a web link"]);
     const take = element("button", { type: "button", id: "take-link" }, ["Take the link"]);
     const file = element("input", {
       type: "file",

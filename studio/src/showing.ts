@@ -15,6 +15,9 @@ export class Showing {
   answer: Answer | null = null;
   choice: Choice = null;
   pinned: Solution[] = [];
+  /** The version whose first linkage is the user's own, fitted again; and the number of that linkage. */
+  private ownOf: number | null = null;
+  own: number | null = null;
   /** The linkage that stays on the board while the hand moves, whatever is found meanwhile. */
   private held: Shown | null = null;
   /** The version that a step back or forth brought, with the answer that stood there. */
@@ -22,9 +25,15 @@ export class Showing {
 
   constructor(private nine: Nine) {}
 
+  /** The first linkage that is answered to a version is the user's own: it is shown. */
+  expectOwn(version: number) {
+    this.ownOf = version;
+  }
+
   /** Forgets what was found, for another target. */
   clear() {
     this.choice = null;
+    this.own = null;
     this.held = null;
     this.answer = null;
     this.nine.hear(null);
@@ -35,6 +44,11 @@ export class Showing {
     this.answer = this.asRestored(answer, version);
     this.nine.hear(answer);
     const all = this.candidates();
+    if (this.ownOf === version && answer.version === version && all[0]) {
+      this.own = all[0].number ?? null;
+      this.choice = { candidate: all[0] };
+      this.ownOf = null;
+    }
     const choice = followed(this.choice, all);
     const chosenIsGone = this.choice !== null && choice === null && all.length > 0;
     this.choice = choice;

@@ -6,7 +6,16 @@ import { changing, setChildren } from "./focus";
 import type { Shown, Solution, Task } from "./messages";
 import { Picture } from "./picture";
 import { longestMax, sizeOf } from "./task";
-import { type Graded, limitedBy, marks, nearnessInWords, SIGNS, sizeInWords, transmissionInWords } from "./words";
+import {
+  type Graded,
+  limitedBy,
+  marks,
+  nearnessInWords,
+  SIGNS,
+  sizeInWords,
+  strayInWords,
+  transmissionInWords,
+} from "./words";
 
 const [W, H] = [150, 96];
 /** Of more than so many only the pictures in sight are drawn. */
@@ -46,6 +55,12 @@ export function nearness(shown: Shown, unit: string | undefined): string {
   if (isExact(shown)) return "through the points to the last digit";
   if (!shown.ability) return `rms ${figure(shown.rms, 3)}${length}, at most ${figure(shown.max, 3)}${length}`;
   return `exactly through the points${shown.certified_within === undefined ? "" : ", proved"}; ${shown.ability}`;
+}
+
+/** How large a linkage is as it moves: the diagonal of the box of all of it. */
+function extentOf(moving: Moving): number {
+  const [left, low, right, high] = moving.box();
+  return Math.hypot(right - left, high - low);
 }
 
 /** What a card shows. */
@@ -93,7 +108,8 @@ class Card {
   show({ moving, task, name, marks, chosen, colour }: Entry, part: number | null) {
     const { shown } = moving;
     Object.assign(this, { moving, task });
-    if (this.seen || part !== null) this.draw(part ?? 0);
+    const few = part !== null;
+    if (this.seen || few) this.draw(part ?? 0);
     const pinned = colour !== undefined;
     setAll(this.node, { class: pinned ? `card pin-${colour}` : "card" });
     const { unit } = task;
@@ -103,6 +119,7 @@ class Card {
       longest: longestMax(task),
       transmission: task.transmission_deg_min,
       ratio: task.link_ratio_max ?? 20,
+      pivots: task.pivots_in,
     };
     const limited = limitedBy(shown, limits);
     const exact = shown.ability !== undefined || isExact(shown);
@@ -110,7 +127,9 @@ class Card {
       ...(exact ? [] : [nearnessInWords(shown, size)]),
       transmissionInWords(shown.transmission_deg),
     ];
-    const plain = [sizeInWords(shown.linkage, size), ...(limited ? [limited] : [])];
+    const extent = few ? extentOf(moving) : undefined;
+    const strays = few && task.closed && !exact ? strayInWords(moving, task.points, size) : "";
+    const plain = [sizeInWords(shown.linkage, size, extent), ...[strays, limited].filter((text) => text !== "")];
     const key = JSON.stringify([texts, graded, plain, marks, shown.accepted, chosen, pinned]);
     if (key === this.key) return;
     this.key = key;
@@ -120,7 +139,10 @@ class Card {
       ...graded.map(({ grade, text }) => element("span", { class: grade }, [`${SIGNS[grade]} ${text}`])),
       ...plain.map((text) => element("span", {}, [text])),
     );
-    this.verdict.classList.toggle("good", shown.accepted);
+    // No approval in green beside what is poor.
+    const isPoor = graded.some(({ grade }) => grade === "poor");
+    this.verdict.classList.toggle("good", shown.accepted && !isPoor);
+    this.verdict.classList.toggle("plain", shown.accepted && isPoor);
     setAll(this.pick, { "aria-pressed": String(chosen) });
     this.pin.textContent = pinned ? "Unpin" : "Pin";
     setAll(this.pin, { "aria-label": `${pinned ? "Unpin" : "Pin"} ${name.toLowerCase()}` });
@@ -178,23 +200,21 @@ export class Strip {
     return card;
   }
 
-  /** Shows candidates, then what is pinned, each over the target that it was found for. */
-  show(all: Moving[], solutions: Solution[], found: number, chosen: number) {
+  /** Shows candidates, then what is pinned, each over the target that it was found for; `own`: the number of the user's. */
+  show(all: Moving[], solutions: Solution[], found: number, chosen: number, own: number | null) {
     const before = this.shown;
     this.found = found;
     this.shown = all.map((_, i) => (i < found ? this.card(0, i) : this.card(1, i - found)));
-    const extent = (moving: Moving) => {
-      const [left, low, right, high] = moving.box();
-      return Math.hypot(right - left, high - low);
-    };
     const candidates = all.slice(0, found);
     // Of many through nine points no curve is traced that is not looked at.
     const marked =
-      found > MANY ? [] : marks(candidates.map((moving) => ({ shown: moving.shown, extent: extent(moving) })));
+      found > MANY ? [] : marks(candidates.map((moving) => ({ shown: moving.shown, extent: extentOf(moving) })));
     all.forEach((moving, i) => {
       const name = i < found ? `Linkage ${i + 1}` : `Pinned ${i - found + 1}`;
       const colour = i < found ? undefined : (solutions[i].colour ?? 0);
-      const entry = { moving, task: solutions[i].task, name, marks: marked[i] ?? [], chosen: i === chosen, colour };
+      const isOwn = own !== null && moving.shown.number === own;
+      const tags = [...(isOwn ? ["yours"] : []), ...(marked[i] ?? [])];
+      const entry = { moving, task: solutions[i].task, name, marks: tags, chosen: i === chosen, colour };
       this.shown[i].show(entry, all.length <= MANY ? this.part : null);
     });
     if (this.shown.length !== before.length || this.shown.some((card, i) => card !== before[i])) {

@@ -22,7 +22,7 @@ export class SureChip {
   show(sure: NonNullable<Answer["sure"]> | null, said: string) {
     this.place.hidden = sure === null;
     if (sure === null) return;
-    this.summary.textContent = `${WORDS[sure]} that nothing better was missed`;
+    this.summary.textContent = `How sure: ${WORDS[sure]}`;
     this.figures.textContent = said;
   }
 }

@@ -5,7 +5,7 @@ const TABS = ["linkages", "wishes", "points", "build"] as const;
 export type Tab = (typeof TABS)[number];
 
 /** From so wide a page on there is room for two. */
-const WIDE = "(min-width: 1180px)";
+export const WIDE = "(min-width: 1180px)";
 
 export class Tabs {
   private buttons: HTMLButtonElement[];

@@ -1,6 +1,6 @@
 // What is asked, kept in step with itself: lists beside the points are as long as the points are many.
 
-import type { Answer, Ask, Box, Point, Task } from "./messages";
+import type { Answer, AnyAsk, Box, Point, Task } from "./messages";
 
 /** So many points have all their linkages told. */
 export const NINE = 9;
@@ -66,6 +66,13 @@ export function withLongest(task: Task, times: number | null): Task {
   return { ...task, kept: { ...kept, [LONGEST]: value } };
 }
 
+/** The same with its limit on the longest link said, where it is the usual one. */
+export function withLongestSaid(task: Task): Task {
+  const longest = longestMax(task);
+  if (longest === null || task.kept?.[LONGEST] !== undefined) return task;
+  return { ...task, kept: { ...task.kept, [LONGEST]: String(Number(longest.toPrecision(6))) } };
+}
+
 /** The limit on the extent of the whole linkage in sizes of the path; null: any. */
 export function extentTimes(task: Task): number | null {
   const given = Number(task.kept?.[EXTENT]);
@@ -77,7 +84,9 @@ export function withExtent(task: Task, times: number | null): Task {
   const { [EXTENT]: _, ...kept } = task.kept ?? {};
   const rest = Object.keys(kept).length > 0 ? kept : undefined;
   if (times === null) return { ...task, kept: rest };
-  return { ...task, kept: { ...kept, [EXTENT]: String(Number((times * sizeOf(task.points)).toPrecision(6))) } };
+  // A file that bounds the extent says nothing of the longest link: on the page that limit stays.
+  const said = withLongestSaid({ ...task, kept: rest });
+  return { ...task, kept: { ...said.kept, [EXTENT]: String(Number((times * sizeOf(task.points)).toPrecision(6))) } };
 }
 
 /** What a problem file says beyond the controls of the page. */
@@ -272,8 +281,14 @@ export function nearestInstead(task: Task, answer: Answer | null): { task: Task;
   };
 }
 
-/** The task of an Ask: the rest is the connection's. */
-export function taskOf(ask: Ask): Task {
-  const { version: _v, moving: _m, held: _h, fresh: _f, ...task } = ask;
-  return task;
+/** The task of an edit: the rest is the connection's. What an edit leaves out has its default. */
+export function taskOf(ask: AnyAsk): Task {
+  const { version: _v, moving: _m, held: _h, from: _l, fresh: _f, ...task } = ask;
+  return {
+    ...task,
+    name: ask.name ?? "drawing",
+    closed: ask.closed ?? false,
+    types: ask.types ?? [],
+    seed: ask.seed ?? 1,
+  };
 }

@@ -1,7 +1,7 @@
 // The quality of a linkage in words: how near its curve comes, how well it transmits, how large it is.
 
 import { figure } from "../../src/report/html/player/svg.mjs";
-import type { Shown } from "./messages";
+import type { Box, Point, Shown } from "./messages";
 
 /** How good a figure is; a sign goes with each, for those who see no colour. */
 export type Grade = "good" | "fair" | "poor";
@@ -32,6 +32,8 @@ const [WELL, FAIRLY, POORLY] = [40, 25, 10];
 
 export function transmissionInWords(deg: number): Graded {
   const angle = `transmission ${deg < 0.05 ? 0 : figure(deg, 2)}°`;
+  // Graded as it is written: 39.9 is 40.
+  deg = Number(deg.toPrecision(2));
   if (deg >= WELL) return { grade: "good", text: `${angle} (good)` };
   if (deg >= FAIRLY) return { grade: "fair", text: `${angle} (fair)` };
   if (deg >= POORLY) return { grade: "poor", text: `${angle} (poor)` };
@@ -44,19 +46,51 @@ export function longestOf({ A, B, a, b, c, d, e }: Shown["linkage"]): number {
 }
 
 /** The longest link as a multiple of the path. */
-export const sizeInWords = (linkage: Shown["linkage"], size: number): string =>
-  `longest link ${Number((longestOf(linkage) / size).toPrecision(2))} × the path`;
+export function sizeInWords(linkage: Shown["linkage"], size: number, extent?: number): string {
+  const times = (length: number) => Number((length / size).toPrecision(2));
+  const whole = extent === undefined ? "" : `, whole ${times(extent)} ×`;
+  return `longest link ${times(longestOf(linkage))} × the path${whole}`;
+}
+
+/** The part of the path's size from which on a curve is said to leave the path. */
+const STRAYS = 0.15;
+/** Of so many positions of the curve one is looked at. */
+const EVERY = 8;
+
+/** Says that the curve of a linkage leaves a closed path on its way, where it does: between the points nothing is asked. */
+export function strayInWords(moving: { curve: (Point | null)[] }, points: Point[], size: number): string {
+  const along = points.map((p, i): [Point, Point] => [p, points[(i + 1) % points.length]]);
+  const far = ([x, y]: Point) =>
+    Math.min(
+      ...along.map(([p, q]) => {
+        const [dx, dy] = [q[0] - p[0], q[1] - p[1]];
+        const part = Math.min(Math.max(((x - p[0]) * dx + (y - p[1]) * dy) / (dx * dx + dy * dy || 1), 0), 1);
+        return Math.hypot(x - p[0] - part * dx, y - p[1] - part * dy);
+      }),
+    );
+  const looked = moving.curve.filter((p, i): p is Point => p !== null && i % EVERY === 0);
+  const most = Math.max(0, ...looked.map(far));
+  return most > STRAYS * size ? `its curve leaves the path by ${Math.round((100 * most) / size)} %` : "";
+}
 
 /** The limit on which a linkage lies, in words; empty if on none. */
 export function limitedBy(
   shown: Shown,
-  limits: { longest: number | null; transmission?: number; ratio?: number },
+  limits: { longest: number | null; transmission?: number; ratio?: number; pivots?: Box },
 ): string {
   const said: string[] = [];
   const near = (value: number, limit: number) => Math.abs(value - limit) <= 2e-3 * limit;
   if (limits.longest !== null && near(longestOf(shown.linkage), limits.longest)) said.push("longest link");
   if (limits.transmission && near(shown.transmission_deg, limits.transmission)) said.push("transmission angle");
   if (limits.ratio && near(shown.link_ratio, limits.ratio)) said.push("link ratio");
+  const { pivots } = limits;
+  if (pivots) {
+    const slack = 1e-3 * Math.hypot(pivots[2] - pivots[0], pivots[3] - pivots[1]);
+    const { A, B } = shown.linkage;
+    const isAtRim = ([x, y]: Point) =>
+      [x - pivots[0], y - pivots[1], pivots[2] - x, pivots[3] - y].some((d) => d < slack);
+    if (isAtRim(A) || isAtRim(B)) said.push("pivot box");
+  }
   return said.length > 0 ? `limited by: ${said.join(", ")}` : "";
 }
 
@@ -69,6 +103,8 @@ export function marks(all: { shown: Shown; extent: number }[]): string[][] {
   const best = (key: (one: (typeof able)[0]) => number) =>
     able.reduce((least, one) => (key(one) < key(least) * (1 - 1e-9) ? one : least));
   words[best(({ extent }) => extent).i].push("smallest");
-  words[best(({ shown }) => 180 - shown.transmission_deg).i].push("best transmission");
+  // The best of bad ones is no good one.
+  const transmits = best(({ shown }) => 180 - shown.transmission_deg);
+  if (transmits.shown.transmission_deg >= FAIRLY) words[transmits.i].push("best transmission");
   return words;
 }

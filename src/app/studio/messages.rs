@@ -103,6 +103,9 @@ pub struct Ask {
     /// The number of a linkage that stays among the answers while it can follow the hand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub held: Option<u64>,
+    /// A linkage to begin with: it is fitted from where it is, and stays among the answers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<NaturalCoordinates>,
     /// The target has nothing to do with the one before: nothing is to follow it.
     #[serde(default, skip_serializing_if = "is_default")]
     pub fresh: bool,

@@ -6,7 +6,7 @@ use crate::files::problem_file::ProblemFile;
 use crate::files::svg_file::{self, SvgOptions};
 use crate::files::{name, points_file, problem_file};
 use crate::record::ProblemRecord;
-use crate::report::html::problem_json;
+use crate::report::html::{linkage_json, problem_json};
 use crate::task::spec::TimingSpec;
 
 /// Reads a text as the file that it would be. No other file is opened.
@@ -55,7 +55,9 @@ pub fn read(text: &Text) -> Result<Reading, AskError> {
 pub fn of_report(text: &str) -> Result<Ask, AskError> {
     let json = problem_json(text).ok_or(AskError::NoReport)?;
     let recorded: ProblemRecord = serde_json::from_str(json).map_err(|_| AskError::NoReport)?;
-    Ok(Ask::of(&ProblemFile::of(recorded))?)
+    // A linkage that cannot be read is not begun with.
+    let from = linkage_json(text).and_then(|json| serde_json::from_str(json).ok());
+    Ok(Ask { from, ..Ask::of(&ProblemFile::of(recorded))? })
 }
 
 #[cfg(test)]

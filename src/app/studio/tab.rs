@@ -9,6 +9,7 @@ use super::messages::{Answer, Ask, Counted, Doing, Shown, Sure};
 use super::status::{ended, under_way};
 use crate::app::job::run::{Context, Job, run};
 use crate::judge::assess::assess;
+use crate::mechanism::FourBar;
 use crate::record::{Candidate, ExactRecord, Record, Relaxation};
 use crate::synthesis::continuation::Exact;
 use crate::synthesis::live::nine::Nine;
@@ -213,6 +214,9 @@ impl Tab {
             self.session.clear();
         }
         self.session.hold(ask.held);
+        if let Some(linkage) = ask.from.and_then(|from| FourBar::new(from).ok()) {
+            self.session.begin(&problem, &linkage);
+        }
         self.follow(&problem);
         self.asked = Some((job, problem));
         self.begin = Some(Instant::now() + if ask.moving { REST } else { Duration::ZERO });

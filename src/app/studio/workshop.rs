@@ -85,16 +85,29 @@ pub(super) fn archive(
     if let Some(problem) = problem {
         add("problem.toml", "what was asked: linkwright synth and studio read it", problem);
     }
-    let mut list = format!("{name}\n\n");
+    let mut list = format!("{name}\n\nTo cut: {name}-plates.dxf; the kerf is in it already.\n\n");
     for (file, purpose, bytes) in &files {
         list.push_str(&format!("{file}: {purpose} ({} bytes)\n", bytes.len()));
     }
-    let sizes: Vec<String> = sizes.iter().map(|(key, value)| format!("{key} = {value}")).collect();
+    let sizes: Vec<String> = sizes.iter().map(|(key, value)| format!("{} {value}", named(key))).collect();
     if !sizes.is_empty() {
         list.push_str(&format!("\nMade with {}.\n", sizes.join(", ")));
     }
     files.insert(0, (format!("{name}-contents.txt"), "", list.into_bytes()));
     zipped(&files).map_err(|why| DetailsError::NotPacked(why.to_string()))
+}
+
+/// Returns a size in words.
+fn named(key: &str) -> &str {
+    match key {
+        "hole_mm" => "holes of (mm)",
+        "margin_mm" => "material around a hole (mm)",
+        "kerf_mm" => "a kerf of (mm)",
+        "thickness_mm" => "plates of (mm)",
+        "gap_mm" => "gaps of (mm)",
+        "sheet_mm" => "a sheet of (mm)",
+        other => other,
+    }
 }
 
 /// Returns the settings of a format among the sizes; those that mean nothing for it are left out.

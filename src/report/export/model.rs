@@ -201,24 +201,33 @@ impl<'a> Model<'a> {
     /// Returns the lower left corners of plates of these sizes on a sheet, whose rim the tool may cut.
     fn on_sheet(&self, sizes: &[Complex], sheet: Complex) -> Result<Vec<Complex>, Refusal> {
         let room = sheet - Complex::new(self.kerf, self.kerf);
-        let corners = in_columns(sizes, self.gap, room.im);
-        let farthest = |of: fn(&Complex) -> f64| {
-            corners.iter().zip(sizes).map(|(corner, size)| of(&(corner + size))).fold(0.0, f64::max)
-        };
-        let [width, height] = [farthest(|at| at.re), farthest(|at| at.im)];
-        if width <= room.re && height <= room.im {
-            return Ok(corners);
+        // Columns as high as one plate, two plates, ..
+        let heights = (0..sizes.len()).flat_map(|from| {
+            let sum =
+                |to: usize| sizes[from..=to].iter().map(|size| size.im + self.gap).sum::<f64>() - self.gap;
+            (from..sizes.len()).map(sum).collect::<Vec<f64>>()
+        });
+        // How much of the sheet a layout needs: more than 1 is too much.
+        let laid_out = heights.map(|height| {
+            let corners = in_columns(sizes, self.gap, height * (1.0 + f64::EPSILON));
+            let farthest = |of: fn(&Complex) -> f64| {
+                corners.iter().zip(sizes).map(|(corner, size)| of(&(corner + size))).fold(0.0, f64::max)
+            };
+            let needed = Complex::new(farthest(|at| at.re), farthest(|at| at.im));
+            ((needed.re / room.re).max(needed.im / room.im), needed, corners)
+        });
+        let best = laid_out.min_by(|one, other| one.0.total_cmp(&other.0));
+        let Some((part, needed, corners)) = best else { return Ok(Vec::new()) };
+        if part <= 1.0 && room.re > 0.0 && room.im > 0.0 {
+            let rim = 0.5 * Complex::new(self.kerf, self.kerf);
+            return Ok(corners.into_iter().map(|corner| corner + rim).collect());
         }
-        let needed = [width + self.kerf, height + self.kerf].map(|side| side.ceil());
+        let [wide, high] = [needed.re, needed.im].map(|side| exact((side + self.kerf).ceil()));
         Err(Refusal::about(
             self.settings,
             "sheet_mm",
             format!("the plates do not fit on a sheet of {} x {} mm", exact(sheet.re), exact(sheet.im)),
-            format!(
-                "{} x {} mm would do, and a smaller scale, margin_mm or gap_mm needs less",
-                exact(needed[0]),
-                exact(needed[1])
-            ),
+            format!("{wide} x {high} mm would do, and a smaller scale, margin_mm or gap_mm needs less"),
         ))
     }
 

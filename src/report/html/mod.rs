@@ -100,7 +100,7 @@ fn page_with_drawings(record: &Record, shown: Shown, drawings: &[&str], extent: 
     .render()
 }
 
-pub use body::problem_json;
+pub use body::{linkage_json, problem_json};
 
 /// Returns the report's header on the whole run, as markup: the outcome, the obstacles, and the changes that would
 /// help.

@@ -5,7 +5,8 @@ import { element, figure } from "./player/svg.mjs";
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const byKey = new Map(data.mechanisms.map((mechanism) => [mechanism.key, mechanism]));
-const articles = [...document.querySelectorAll("article[data-key]")];
+/** @type {HTMLElement[]} */
+const articles = [...document.querySelectorAll("article[data-key]")].map((one) => /** @type {HTMLElement} */ (one));
 const table = document.querySelector("table.candidates");
 const all = (selector, root = document) => [...root.querySelectorAll(selector)];
 
@@ -150,7 +151,9 @@ async function copied(text) {
 function listenToKeys(player, choose) {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const control = event.target.closest?.("button, input, select, textarea, a, summary, [role=slider]");
+    const control = /** @type {Element} */ (event.target).closest?.(
+      "button, input, select, textarea, a, summary, [role=slider]",
+    );
     const isText = control?.matches("select, input[type=number], textarea");
     if (event.key === " " && (!control || control.matches("[role=slider], input[type=range], input[type=radio]"))) {
       event.preventDefault();

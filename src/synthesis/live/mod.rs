@@ -8,9 +8,11 @@
 
 pub mod nine;
 
+use crate::judge::assess::assess;
 use crate::judge::loosen::judged_under;
 use crate::judge::rank::{compare, distinct, distinct_places};
 use crate::judge::warm::start_at;
+use crate::mechanism::FourBar;
 use crate::record::Candidate;
 use crate::synthesis::constants::live::{EFFORT, EVALUATIONS, FIRST_LOOK, FOLLOWING};
 use crate::synthesis::multistart::{judged, polish};
@@ -50,6 +52,18 @@ impl Session {
     /// can follow. `None`: none is held.
     pub fn hold(&mut self, number: Option<u64>) {
         self.held = number;
+    }
+
+    /// Begins anew with a linkage, each point met where it comes nearest, and holds it. Without effect if it cannot be
+    /// assembled.
+    pub fn begin(&mut self, problem: &Problem, linkage: &FourBar) {
+        let positions = nearest_positions(problem, linkage);
+        let judged = positions.and_then(|(crank_deg, t1_at)| assess(problem, linkage, &crank_deg, &t1_at));
+        if let Some(candidate) = judged {
+            self.given += 1;
+            self.held = Some(self.given);
+            self.keep(vec![(self.given, candidate)]);
+        }
     }
 
     /// Fits the candidates again, each from its present parameters, to a problem whose target or limits have moved.
@@ -207,6 +221,22 @@ mod tests {
         let best = searched(&moved);
         session.join(&moved, best);
         assert!(session.candidates().len() <= FOLLOWING);
+    }
+
+    #[test]
+    fn a_linkage_to_begin_with_is_fitted_from_where_it_is_and_stays() {
+        let cancel = AtomicBool::new(false);
+        let problem = egg(24, 0, 0.0);
+        let found = searched(&problem);
+        let linkage = found[0].linkage.scaled(1.01).expect("a linkage");
+        let mut session = Session::default();
+        session.begin(&problem, &linkage);
+        let before = session.candidates()[0].error.sum_sq;
+        let after = session.follow(&problem, &Budget::new(&cancel, None))[0].error.sum_sq;
+        assert!(after < before, "{after} {before}");
+        let number = session.numbers()[0];
+        session.join(&problem, found);
+        assert!(session.numbers().contains(&number));
     }
 
     #[test]

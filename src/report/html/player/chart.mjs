@@ -33,6 +33,9 @@ class Chart {
     }
   }
 
+  /** Draws it anew, for the width that there is. */
+  draw() {}
+
   /** Takes the width that there is. */
   measure() {
     this.width = Math.max(this.figure.clientWidth || 420, 220);
@@ -86,6 +89,12 @@ export class CycleChart extends Chart {
   constructor(place, options) {
     super(place, options);
     this.options = options;
+    /** @type {import("./cycle.mjs").Cycle | undefined} */
+    this.cycle = undefined;
+    /** @type {(import("./cycle.mjs").Sample | null)[]} */
+    this.samples = [];
+    /** @type {number[]} */
+    this.levels = [];
     const pick = (event) => {
       if (!this.cycle) return;
       const box = this.svg.getBoundingClientRect();
@@ -172,6 +181,7 @@ export class CycleChart extends Chart {
     }
     const clipped = (value) => Math.min(Math.max(value, low - (high - low)), high + (high - low));
     for (const line of this.options.lines) {
+      /** @type {([number, number] | null)[]} */
       const points = samples.map((sample) => {
         const value = sample ? line.of(sample) : NaN;
         return Number.isFinite(value) ? [x(sample.q), this.y(clipped(value), low, high)] : null;
@@ -268,6 +278,7 @@ export class ErrorChart extends Chart {
         this.xOf,
       ),
     );
+    /** @type {([number, number] | null)[]} */
     const limit = points.map((point, i) =>
       point.tolerance === null || point.tolerance > high ? null : [this.xOf(i), y(point.tolerance)],
     );

@@ -104,6 +104,16 @@ export class Stage {
     this.place = place;
     this.options = options;
     this.look = "linkage";
+    /** Its size, and pixels of a unit of length. @type {number | undefined} */
+    this.width = undefined;
+    /** @type {number | undefined} */
+    this.height = undefined;
+    /** @type {number | undefined} */
+    this.scale = undefined;
+    /** @type {((p: [number, number]) => [number, number]) | undefined} */
+    this.toPixel = undefined;
+    /** @type {((p: [number, number]) => [number, number]) | undefined} */
+    this.toPlane = undefined;
     this.svg = shape("svg", { class: "stage", role: "group", "aria-label": "The linkage over its target" });
     this.still = shape("g");
     this.moving = shape("g");
@@ -363,6 +373,7 @@ export class Stage {
       "absent",
       !near || Math.hypot(near.target[0] - joints.P[0], near.target[1] - joints.P[1]) * this.scale > 40,
     );
+    /** @type {Record<string, [[number, number], [number, number][]]>} */
     const around = { A: [a, [c, b]], B: [b, [d, a]], C: [c, [a, d, p]], D: [d, [b, c, p]], P: [p, [c, d]] };
     for (const [name, [joint, others]] of Object.entries(around)) {
       const [x, y] = awayFrom(joint, others);

@@ -1,0 +1,908 @@
+// Made by studio/wire.mjs from docs/studio-messages.json and docs/studio-openapi.json: not to be changed by hand.
+
+/**
+ * The reference direction of prescribed crank angles.
+ */
+export type AngleOffset = "free" | "fixed" | "ground";
+/**
+ * The meaning of the player's one parameter q, in degrees.
+ */
+export type DriveKind = "turn" | "rock" | "through" | "none";
+/**
+ * The types of four-bars, told by which link is the shortest where the Grashof margin is positive.
+ */
+export type LinkageType =
+  "crank-rocker" | "rocker-crank" | "double-crank" | "double-rocker" | "triple-rocker" | "change-point";
+/**
+ * The activity of the studio for a tab.
+ */
+export type Doing = "following" | "searching" | "done" | "refused";
+/**
+ * A value of a problem file's key. It is displayed as it is typed in `--set KEY=VALUE`.
+ */
+export type TypedValue = number | number[] | [number, number][] | string | string[];
+/**
+ * How sure it is that a search has missed nothing better.
+ */
+export type Sure = "sure" | "fairly" | "not";
+/**
+ * The rule for the circuits or the branches of a motion.
+ */
+export type OnePolicy = "one" | "any";
+/**
+ * The ways in which the motion may come back to the first point of a target that ends where it begins.
+ */
+export type ClosingPolicy = "one-way" | "any";
+/**
+ * The direction in which the crank turns along the points.
+ */
+export type DirectionPolicy = "any" | "ccw" | "cw";
+/**
+ * The method of the search.
+ */
+export type Method = "auto" | "genetic" | "differential-evolution" | "least-squares" | "continuation";
+/**
+ * The quantity that is minimised.
+ */
+export type Objective = "sum-of-squares" | "max-deviation";
+/**
+ * The rule for the order of the points.
+ */
+export type OrderPolicy = "required" | "any";
+/**
+ * The motion over which the transmission angle is judged.
+ */
+export type TransmissionOver = "cycle" | "used";
+/**
+ * The unit that labels lengths.
+ */
+export type Unit = "mm" | "cm" | "m" | "in";
+/**
+ * The form of a comparison.
+ */
+export type Form = "json" | "html" | "csv" | "svg";
+/**
+ * The source of a linkage.
+ */
+export type Source =
+  | {
+      job: OfJob;
+    }
+  | {
+      drawn: Drawn;
+    };
+/**
+ * The state of a job.
+ */
+export type JobState = "running" | "done" | "stopped" | "broken-off" | "elsewhere" | "failed" | "unreadable";
+/**
+ * The kind of a text.
+ */
+export type Kind = "csv" | "svg" | "problem" | "report";
+
+export interface Wire {
+  AngleOffset: AngleOffset;
+  Answer: Answer;
+  Ask: Ask;
+  Best: Best;
+  Change: Change;
+  ClosingPolicy: ClosingPolicy;
+  CompareAsk: CompareAsk;
+  Counted: Counted;
+  Details: Details;
+  DetailsAsk: DetailsAsk;
+  DirectionPolicy: DirectionPolicy;
+  Doing: Doing;
+  Drawn: Drawn;
+  Drive: Drive;
+  DriveKind: DriveKind;
+  Expect: Expect;
+  ExpectedCensus: ExpectedCensus;
+  ExportAsk: ExportAsk;
+  Form: Form;
+  JobAsk: JobAsk;
+  JobList: JobList;
+  JobProgress: JobProgress;
+  JobResult: JobResult;
+  JobShown: JobShown;
+  JobState: JobState;
+  JudgeAsk: JudgeAsk;
+  Kind: Kind;
+  Known: Known;
+  LinkageAsk: LinkageAsk;
+  LinkageType: LinkageType;
+  Method: Method;
+  NaturalCoordinates: NaturalCoordinates;
+  Objective: Objective;
+  OfJob: OfJob;
+  OnePolicy: OnePolicy;
+  Opened: Opened;
+  OrderPolicy: OrderPolicy;
+  Published: Published;
+  RawPoints: RawPoints;
+  Reading: Reading;
+  Relaxation: Relaxation;
+  Shown: Shown;
+  Source: Source;
+  Sure: Sure;
+  Text: Text;
+  TimingSpec: TimingSpec;
+  TransmissionOver: TransmissionOver;
+  TypedValue: TypedValue;
+  Unit: Unit;
+}
+/**
+ * The answer to an edit. Later answers to the same edit replace earlier ones; answers that were not sent before the
+ * next came are dropped.
+ */
+export interface Answer {
+  /**
+   * The linkages, better first; in exact mode all real ones through the nine points.
+   */
+  candidates: Shown[];
+  doing: Doing;
+  nine?: Counted;
+  /**
+   * The part of the search's budget that is used, 0 to 1; most searches end before it is used up.
+   */
+  progress?: number;
+  /**
+   * If nothing is acceptable: the changes that help, nearest first.
+   */
+  relaxations: Relaxation[];
+  /**
+   * The same in words: what is done, how sure it is, and what prevents better answers.
+   */
+  said: string;
+  sure?: Sure;
+  /**
+   * The edit's version.
+   */
+  version: number;
+}
+/**
+ * A linkage with its figures, ready to be played.
+ */
+export interface Shown {
+  /**
+   * Through nine points: the abilities of the best of the curve's six mechanisms.
+   */
+  ability?: string;
+  /**
+   * Whether every requirement is met and no defect is there that is not allowed.
+   */
+  accepted: boolean;
+  /**
+   * Through nine points: the proved distance within which there is one exact linkage.
+   */
+  certified_within?: number;
+  /**
+   * The crank angle at each target point, degrees.
+   */
+  crank_deg: number[];
+  drive: Drive;
+  /**
+   * Longest over shortest link.
+   */
+  link_ratio: number;
+  linkage: NaturalCoordinates;
+  /**
+   * The largest error.
+   */
+  max: number;
+  /**
+   * Its number: it keeps it while it follows the hand.
+   */
+  number?: number;
+  /**
+   * Its rank, from 1.
+   */
+  rank: number;
+  /**
+   * The root of the mean squared error.
+   */
+  rms: number;
+  /**
+   * The assembly (1 or -1) at each point.
+   */
+  t1_at: number[];
+  /**
+   * The worst transmission angle, degrees from 0 to 90.
+   */
+  transmission_deg: number;
+  type: LinkageType;
+  /**
+   * The requirements that are not met, by their keys, and the defects.
+   */
+  unmet: string[];
+  /**
+   * The number of the worst point, from 0.
+   */
+  worst: number;
+}
+/**
+ * The motion that a page plays: the circuit of the first point, and of it the branch used or all of it.
+ */
+export interface Drive {
+  /**
+   * Half of the crank's range; 180 where it turns fully.
+   */
+  half_width_deg: number;
+  kind: DriveKind;
+  /**
+   * The middle of the crank's range, degrees in (-180, 180].
+   */
+  middle_deg: number;
+  /**
+   * The assembly; where toggles are passed, that of the first point.
+   */
+  t1: number;
+}
+/**
+ * The nine parameters and two signs in the letters of the seed paper, as they stand in files.
+ */
+export interface NaturalCoordinates {
+  /**
+   * The fixed pivot of the crank.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  A: [number, number];
+  /**
+   * The fixed pivot of the follower.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  B: [number, number];
+  /**
+   * |AC|.
+   */
+  a: number;
+  /**
+   * |CD|.
+   */
+  b: number;
+  /**
+   * |BD|.
+   */
+  c: number;
+  /**
+   * |CP|.
+   */
+  d: number;
+  /**
+   * |DP|.
+   */
+  e: number;
+  /**
+   * Which intersection D takes: 1 = left of C -> B.
+   */
+  t1: number;
+  /**
+   * Which side of C -> D carries P: 1 = left.
+   */
+  t2: number;
+}
+/**
+ * The linkages through nine points, counted.
+ */
+export interface Counted {
+  /**
+   * Solutions up to cognates, complex ones included.
+   */
+  classes: number;
+  /**
+   * Of these, on one branch.
+   */
+  free_of_defects: number;
+  /**
+   * Of these, in order.
+   */
+  in_order: number;
+  /**
+   * Of these, those that pass all points on one circuit.
+   */
+  one_circuit: number;
+  /**
+   * Those that are linkages.
+   */
+  real: number;
+  /**
+   * The same and more in words.
+   */
+  said: string[];
+}
+/**
+ * A change of the problem after which something acceptable is found.
+ */
+export interface Relaxation {
+  /**
+   * Its rms error.
+   */
+  rms: number;
+  /**
+   * The keys to set.
+   */
+  set: Change[];
+  /**
+   * The best sum of squares then.
+   */
+  sum_sq: number;
+}
+/**
+ * A key of the problem file with another value.
+ */
+export interface Change {
+  from: TypedValue;
+  /**
+   * The key, as in `--set KEY=VALUE`.
+   */
+  key: string;
+  to: TypedValue;
+}
+/**
+ * An edit: a target and the requirements of its linkage, as a tab has them. All lengths are in `unit`.
+ */
+export interface Ask {
+  branch?: OnePolicy;
+  circuit?: OnePolicy;
+  /**
+   * Whether the target is a closed curve.
+   */
+  closed?: boolean;
+  closing?: ClosingPolicy;
+  direction?: DirectionPolicy;
+  expect?: Known;
+  /**
+   * The box that must hold every joint and the coupler point over the motion used.
+   *
+   * @minItems 4
+   * @maxItems 4
+   */
+  footprint_in?: [number, number, number, number];
+  /**
+   * The target has nothing to do with the one before: nothing is to follow it.
+   */
+  fresh?: boolean;
+  from?: NaturalCoordinates;
+  /**
+   * The number of a linkage that stays among the answers while it can follow the hand.
+   */
+  held?: number;
+  /**
+   * Other keys of the problem file under `design`, `require` and `solve`, each with its value as it is typed there.
+   */
+  kept?: {
+    [k: string]: string;
+  };
+  /**
+   * Longest over shortest link at most.
+   */
+  link_ratio_max?: number;
+  method?: Method;
+  /**
+   * The hand is still moving: the search waits until it rests.
+   */
+  moving?: boolean;
+  /**
+   * The problem's name, as in problem files.
+   */
+  name?: string;
+  objective?: Objective;
+  order?: OrderPolicy;
+  /**
+   * The box that must hold both fixed pivots: xmin, ymin, xmax, ymax.
+   *
+   * @minItems 4
+   * @maxItems 4
+   */
+  pivots_in?: [number, number, number, number];
+  /**
+   * The target points in their order: 3 to 1000.
+   */
+  points: [number, number][];
+  raw?: RawPoints;
+  /**
+   * The seed of every draw.
+   */
+  seed?: number;
+  /**
+   * The source of the problem, in words.
+   */
+  source?: string;
+  timing?: TimingSpec;
+  /**
+   * The largest error accepted at any point.
+   */
+  tolerance?: number;
+  /**
+   * The largest error accepted at each point, in place of `tolerance`.
+   */
+  tolerances?: number[];
+  /**
+   * The least transmission angle, degrees.
+   */
+  transmission_deg_min?: number;
+  transmission_over?: TransmissionOver;
+  /**
+   * The types allowed; empty: any.
+   */
+  types?: LinkageType[];
+  unit?: Unit;
+  /**
+   * Counts the tab's edits; the answer names the edit that it answers.
+   */
+  version?: number;
+  /**
+   * One positive weight a point.
+   */
+  weights?: number[];
+}
+/**
+ * The known answer of a problem, as under `[expect]` in its file.
+ */
+export interface Known {
+  answer: Expect;
+  /**
+   * A hash of the problem that it belongs to: of its target, bounds, requirements and objective.
+   */
+  of: string;
+}
+/**
+ * The known facts about a problem's answer.
+ */
+export interface Expect {
+  /**
+   * The least sum of squared errors that is known.
+   */
+  best_known_sum_sq?: number;
+  exact?: ExpectedCensus;
+  /**
+   * The sum that a run has to reach to count as a hit; where silent, best_known_sum_sq.
+   */
+  goal_sum_sq?: number;
+  /**
+   * Answers that were published.
+   */
+  published?: Published[];
+}
+/**
+ * The number of linkages through nine points, up to cognates.
+ */
+export interface ExpectedCensus {
+  /**
+   * Isolated solutions, real and complex.
+   */
+  classes?: number;
+  /**
+   * Of these, on one branch.
+   */
+  free_of_defects?: number;
+  /**
+   * Of these, in the order of the points.
+   */
+  in_order?: number;
+  /**
+   * Of these, on one circuit.
+   */
+  one_circuit?: number;
+  /**
+   * Real linkages.
+   */
+  real?: number;
+}
+/**
+ * An answer that was published.
+ */
+export interface Published {
+  /**
+   * The crank angles that were published, degrees from the ground line.
+   */
+  crank_deg?: number[];
+  /**
+   * A remark.
+   */
+  note?: string;
+  /**
+   * The error that was printed.
+   */
+  printed_sum_sq?: number;
+  /**
+   * The error that the vector has when this project evaluates it.
+   */
+  recomputed_sum_sq?: number;
+  /**
+   * Author and year.
+   */
+  source: string;
+  /**
+   * The side on which it closes: 1: D lies left of the line from C to B; -1: right.
+   */
+  t1?: number;
+  /**
+   * r1 ground, r2 crank, r3 coupler, r4 follower, rcx, rcy, x0, y0, theta0 (radians).
+   */
+  vector?: number[];
+}
+/**
+ * Points as they were digitised, with the smoothing and resampling that made the target's points of them.
+ */
+export interface RawPoints {
+  /**
+   * As they were given.
+   */
+  points: [number, number][];
+  /**
+   * The number of points taken evenly along the path.
+   */
+  samples?: number;
+  /**
+   * The standard deviation of the smoothing, a length along the path.
+   */
+  smooth?: number;
+}
+/**
+ * Prescribed crank angles.
+ */
+export interface TimingSpec {
+  /**
+   * One a point, degrees, counter-clockwise positive.
+   */
+  crank_deg: number[];
+  offset: AngleOffset;
+}
+/**
+ * The figures of a result's best candidate.
+ */
+export interface Best {
+  /**
+   * Whether every requirement is met.
+   */
+  accepted: boolean;
+  /**
+   * The largest error.
+   */
+  max: number;
+  /**
+   * The root of the mean squared error.
+   */
+  rms: number;
+  /**
+   * The worst transmission angle, degrees from 0 to 90.
+   */
+  transmission_deg: number;
+  /**
+   * Its type.
+   */
+  type: string;
+}
+/**
+ * Linkages that are to be compared.
+ */
+export interface CompareAsk {
+  form?: Form;
+  /**
+   * The linkages: 1 to 20.
+   */
+  of: Source[];
+  /**
+   * The figures that they are ranked by, as `linkwright compare --sort` takes them; empty: the sum of squared errors.
+   */
+  sort?: string[];
+}
+/**
+ * A candidate of a saved result.
+ */
+export interface OfJob {
+  /**
+   * The result.
+   */
+  name: string;
+  /**
+   * The candidate's rank, from 1.
+   */
+  rank: number;
+}
+/**
+ * A linkage under the hand: the parts of an answer's `Shown` that determine it.
+ */
+export interface Drawn {
+  ask: Ask;
+  /**
+   * The crank angle at each target point, degrees.
+   */
+  crank_deg: number[];
+  linkage: NaturalCoordinates;
+  /**
+   * The assembly (1 or -1) at each point.
+   */
+  t1_at: number[];
+}
+/**
+ * The report's text on a linkage, with its figures.
+ */
+export interface Details {
+  /**
+   * The number of candidates of the result.
+   */
+  candidates: number;
+  /**
+   * Whether the target is a closed curve.
+   */
+  closed: boolean;
+  /**
+   * The problem's name.
+   */
+  name: string;
+  /**
+   * The target points.
+   */
+  points: [number, number][];
+  shown: Shown;
+  /**
+   * The outcome of the search, as markup without scripts.
+   */
+  summary: string;
+  /**
+   * The tolerance at each point.
+   */
+  tolerance?: number[];
+  /**
+   * The least transmission angle that was asked for, degrees.
+   */
+  transmission_deg_min?: number;
+  unit?: Unit;
+  /**
+   * Figures, mobility, warnings, requirements with what they cost, dimensions: as markup without scripts.
+   */
+  words: string;
+}
+/**
+ * A linkage whose details are wanted.
+ */
+export interface DetailsAsk {
+  of: Source;
+}
+/**
+ * A linkage that is wanted as a file.
+ */
+export interface ExportAsk {
+  /**
+   * A format of `linkwright export`, or `html` (the report), `sheet` (its drawing), `points` (CSV along the
+   * points), `layers` (what `linkwright build` prints), `archive` (a zip of everything that it takes to build it).
+   */
+  format: string;
+  /**
+   * With which the names in an archive begin; absent: the problem's name.
+   */
+  name?: string;
+  of: Source;
+  /**
+   * Settings, as `linkwright export --set` takes them: `{"hole_mm": "4"}`. For an archive and for layers: of all its
+   * files.
+   */
+  set?: {
+    [k: string]: string;
+  };
+}
+/**
+ * A search to begin, whose result is saved. Exactly one of `ask` and `problem` is given.
+ */
+export interface JobAsk {
+  ask?: Ask;
+  /**
+   * The text of a problem file. Its points stand in it: files are not read for it.
+   */
+  problem?: string;
+  /**
+   * Replace an earlier result of that name; without it such a name is refused.
+   */
+  replace?: boolean;
+  /**
+   * Keys of `[solve]` to set, with values as `--set` takes them: `{"solve.evaluations": "1000000"}`.
+   */
+  set?: {
+    [k: string]: string;
+  };
+}
+/**
+ * All jobs: those that run and all results of the folder, by name.
+ */
+export interface JobList {
+  /**
+   * The folder, as it was named.
+   */
+  folder: string;
+  /**
+   * The jobs.
+   */
+  jobs: JobShown[];
+  /**
+   * The number of further jobs that are not listed.
+   */
+  more: number;
+}
+/**
+ * A job, or a result that was made before.
+ */
+export interface JobShown {
+  /**
+   * Its name: that of its folder.
+   */
+  name: string;
+  progress?: JobProgress;
+  result?: JobResult;
+  /**
+   * Whether it can go on: from its checkpoint if there is one, else from the beginning.
+   */
+  resumable: boolean;
+  /**
+   * The same in words.
+   */
+  said: string;
+  state: JobState;
+}
+/**
+ * The progress of a search.
+ */
+export interface JobProgress {
+  /**
+   * Whether that one is acceptable.
+   */
+  accepted: boolean;
+  /**
+   * The best rms error so far, in the problem's unit of length.
+   */
+  best_rms?: number;
+  /**
+   * The budget; most searches end before it is used up.
+   */
+  budget: number;
+  /**
+   * Seconds since it began.
+   */
+  elapsed_s: number;
+  /**
+   * Evaluations so far.
+   */
+  evaluations: number;
+  /**
+   * Seconds that are left at most.
+   */
+  left_s?: number;
+  /**
+   * The phase of the search.
+   */
+  phase: string;
+  /**
+   * Evaluations a second.
+   */
+  rate: number;
+}
+/**
+ * The figures of a result's record.
+ */
+export interface JobResult {
+  /**
+   * The number of accepted candidates.
+   */
+  accepted: number;
+  best?: Best;
+  /**
+   * The number of candidates.
+   */
+  candidates: number;
+  /**
+   * Evaluations of the objective.
+   */
+  evaluations: number;
+  /**
+   * The method asked for.
+   */
+  method: string;
+  /**
+   * The number of target points.
+   */
+  points: number;
+  /**
+   * Whether the same problem and seed give the same record again.
+   */
+  reproducible: boolean;
+  /**
+   * The seed of every draw.
+   */
+  seed: number;
+  unit?: Unit;
+  /**
+   * The version of linkwright that wrote it.
+   */
+  version: string;
+}
+/**
+ * A linkage that was changed by hand, over the target of an edit.
+ */
+export interface JudgeAsk {
+  ask: Ask;
+  linkage: NaturalCoordinates;
+}
+/**
+ * A linkage to be written as a file.
+ */
+export interface LinkageAsk {
+  linkage: NaturalCoordinates;
+  /**
+   * Its name.
+   */
+  name?: string;
+  unit?: Unit;
+}
+/**
+ * A saved result, opened.
+ */
+export interface Opened {
+  ask?: Ask;
+  /**
+   * The candidates, better first.
+   */
+  candidates: Shown[];
+  /**
+   * Whether the target is a closed curve.
+   */
+  closed: boolean;
+  /**
+   * The names of the result's files.
+   */
+  files: string[];
+  /**
+   * The problem's name.
+   */
+  name: string;
+  /**
+   * The target points.
+   */
+  points: [number, number][];
+  unit?: Unit;
+  /**
+   * The reason why it cannot, in words.
+   */
+  why_not?: string;
+}
+/**
+ * A text that was read.
+ */
+export interface Reading {
+  ask: Ask;
+  /**
+   * Warnings about values that are ignored or cannot succeed.
+   */
+  warnings: string[];
+  /**
+   * Whether it is a whole problem, with its requirements.
+   */
+  whole: boolean;
+}
+/**
+ * A text to be read.
+ */
+export interface Text {
+  kind: Kind;
+  /**
+   * Its name in messages, and that of a problem without a name.
+   */
+  name?: string;
+  /**
+   * The number of points taken along a drawing; absent: 60.
+   */
+  samples?: number;
+  /**
+   * The id of a drawing's shape; absent: the first.
+   */
+  svg_id?: string;
+  /**
+   * The text itself.
+   */
+  text: string;
+  unit?: Unit;
+}
