@@ -9,8 +9,8 @@ import { roundTo, settled, sizeOf, taskOf, withPoints } from "./task";
 /** What the studio's server reads at most. */
 const MOST = 200_000;
 
-/** A report's problem stands in an element of its own; the rest of it, which may be long, is not sent. */
-const REPORT = /<script type="application\/json" id="(problem|linkage)">[^<]*<\/script>/g;
+/** The data of a report; the rest of it, which may be long, is not sent. */
+const REPORT = /<script type="application\/json" id="data">([^<]*)<\/script>/;
 const MOST_OF_A_REPORT = 50_000_000;
 
 export type Kind = "csv" | "svg" | "problem" | "report";
@@ -27,6 +27,18 @@ export function kindOf(text: string, name = ""): Kind | null {
   return /[a-z]/i.test(line.replace(/\d+(\.\d+)?e[+-]?\d+/gi, "")) ? "csv" : null;
 }
 
+/** What of a report is read: its problem and the linkage that it shows first. */
+function ofReport(text: string): string {
+  try {
+    const { first, mechanisms, problem } = JSON.parse(text.match(REPORT)?.[1] ?? "");
+    const { key, linkage } = mechanisms.find((one: { key: string }) => one.key === first) ?? {};
+    return JSON.stringify({ first, mechanisms: linkage ? [{ key, linkage }] : [], problem });
+  } catch {
+    // The studio says what is wrong with it.
+    return "";
+  }
+}
+
 /** The task of a text, or what is wrong with it. */
 export async function taskOfText(
   text: string,
@@ -35,7 +47,7 @@ export async function taskOfText(
   samples?: number,
 ): Promise<{ task: Task; said: string; from?: Linkage } | string> {
   const kind = kindOf(text, name);
-  if (kind === "report") text = (text.match(REPORT) ?? []).slice(-2).join("");
+  if (kind === "report") text = ofReport(text);
   if (text.length > MOST) return `this is too long: ${MOST} characters at most are read`;
   if (!kind) {
     const points = ofText(text);

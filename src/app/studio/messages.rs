@@ -343,7 +343,7 @@ pub enum Kind {
     Svg,
     /// A problem file.
     Problem,
-    /// A report (`report.html`), or the element of it that holds its problem.
+    /// A report (`report.html`), or its data (JSON): `first`, `mechanisms`, `problem`.
     Report,
 }
 

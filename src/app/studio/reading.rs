@@ -5,8 +5,7 @@ use super::messages::{Ask, Kind, Reading, Text};
 use crate::files::problem_file::ProblemFile;
 use crate::files::svg_file::{self, SvgOptions};
 use crate::files::{name, points_file, problem_file};
-use crate::record::ProblemRecord;
-use crate::report::html::{linkage_json, problem_json};
+use crate::report::html::{Held, held};
 use crate::task::spec::TimingSpec;
 
 /// Reads a text as the file that it would be. No other file is opened.
@@ -53,11 +52,9 @@ pub fn read(text: &Text) -> Result<Reading, AskError> {
 /// # Errors
 /// [`AskError`] if the text is no report, or holds a problem that the studio cannot hold.
 pub fn of_report(text: &str) -> Result<Ask, AskError> {
-    let json = problem_json(text).ok_or(AskError::NoReport)?;
-    let recorded: ProblemRecord = serde_json::from_str(json).map_err(|_| AskError::NoReport)?;
-    // A linkage that cannot be read is not begun with.
-    let from = linkage_json(text).and_then(|json| serde_json::from_str(json).ok());
-    Ok(Ask { from, ..Ask::of(&ProblemFile::of(recorded))? })
+    let Held { problem, linkage: from } = held(text).ok_or(AskError::NoReport)?;
+    let problem = problem.ok_or(AskError::NoReport)?;
+    Ok(Ask { from, ..Ask::of(&ProblemFile::of(problem))? })
 }
 
 #[cfg(test)]
@@ -65,7 +62,7 @@ mod tests {
     use super::*;
     use crate::app::job::run::Job;
     use crate::mechanism::Unit;
-    use crate::record::{Evaluations, Reason, Record};
+    use crate::record::{Evaluations, ProblemRecord, Reason, Record};
     use crate::report::html::report_html;
 
     fn text(kind: Kind, text: &str) -> Text {

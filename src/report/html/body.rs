@@ -3,7 +3,6 @@
 use super::page::{list, paragraph, section};
 use super::{Extent, Shown, candidate, data, exact, picks, practicality, proof, table};
 use crate::files::name;
-use crate::mechanism::NaturalCoordinates;
 use crate::record::{Candidate, Record};
 use crate::report::certificate as certificate_words;
 use crate::report::text::{capitalised, clean, significant};
@@ -35,39 +34,7 @@ pub(super) fn body(record: &Record, drawings: &[&str], extent: Extent, shown: Sh
             p.screen-only { "To go on with its problem: " code { "linkwright studio report.html" } " opens this file." }
             p { "Written by linkwright " (env!("CARGO_PKG_VERSION")) " from the record alone." }
         }
-        script type="application/json" id=(PROBLEM) { (PreEscaped(super::page::embedded(&record.problem))) }
-        @if let Some(linkage) = first_shown(record, shown) {
-            script type="application/json" id=(LINKAGE) { (PreEscaped(super::page::embedded(&linkage))) }
-        }
     }
-}
-
-/// The ids of the elements with the problem and with the linkage that is shown first, as JSON.
-const PROBLEM: &str = "problem";
-const LINKAGE: &str = "linkage";
-
-/// Returns the candidate that a report shows first; none if it shows a pick or a member of a front first.
-fn first_shown(record: &Record, shown: Shown) -> Option<NaturalCoordinates> {
-    let Shown::Candidate(index) = shown else { return None };
-    record.candidates.get(index).map(|candidate| candidate.linkage.natural_coordinates())
-}
-
-/// Returns the JSON of the problem that a report holds, a [`ProblemRecord`](crate::record::ProblemRecord); `None` if the
-/// text is no such report.
-pub fn problem_json(report: &str) -> Option<&str> {
-    element(report, PROBLEM)
-}
-
-/// Returns the JSON of the candidate that a report shows first.
-pub fn linkage_json(report: &str) -> Option<&str> {
-    element(report, LINKAGE)
-}
-
-fn element<'a>(report: &'a str, id: &str) -> Option<&'a str> {
-    let begin = format!(r#"<script type="application/json" id="{id}">"#);
-    // The last one: no text of a record can write markup, and nothing of it stands behind.
-    let (_, after) = report.rsplit_once(&begin)?;
-    Some(after.split_once("</script>")?.0)
 }
 
 /// The place in which the script puts the player; hidden without the script.

@@ -3,12 +3,14 @@
 use super::extras::{Shown, extras, first_key};
 use super::motion::Drive;
 use crate::mechanism::{AssemblyMode, FourBar, MAX_MAGNITUDE};
-use crate::record::{Candidate, Record};
+use crate::record::{Candidate, ProblemRecord, Record};
 use serde::Serialize;
 
 /// The largest number of target points on the page; of more, this many are evenly chosen, and the worst of each
 /// candidate is added.
 const MOST_POINTS: usize = 400;
+/// The largest number of points, with those that they were digitised from, of a problem that is on the page.
+const MOST_HELD: usize = 2000;
 /// The largest number of alternatives of a candidate that can be played.
 pub(super) const MOST_ALTERNATIVES: usize = 6;
 /// The largest number of linkages through nine points that can be played.
@@ -25,6 +27,9 @@ pub(super) struct Data<'a> {
     /// The key of the mechanism shown first.
     first: String,
     mechanisms: Vec<Mechanism<'a>>,
+    /// The problem, so that the studio can go on with it; absent if it has too many points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    problem: Option<&'a ProblemRecord>,
 }
 
 /// The target's points, or the chosen ones.
@@ -91,6 +96,7 @@ impl<'a> Data<'a> {
         }
         let pick =
             |values: &Vec<f64>| chosen.iter().map(|i| values.get(*i).copied().unwrap_or(0.0)).collect();
+        let held = path.points.len() + path.raw.as_ref().map_or(0, |raw| raw.points.len());
         Data {
             unit: record.problem.unit.map(crate::mechanism::Unit::label),
             target: Target {
@@ -102,6 +108,7 @@ impl<'a> Data<'a> {
             transmission_deg_min: record.problem.resolved.require.transmission_deg_min,
             first: first_key(record, shown),
             mechanisms,
+            problem: Some(&record.problem).filter(|_| held <= MOST_HELD),
         }
     }
 }

@@ -19,7 +19,9 @@
 //! All words are written here, for every candidate, so that the page can be read without its script too. The script
 //! draws, plays, sorts and shows one candidate at a time. Nothing in the page refers to a place on a network.
 
-use crate::record::Record;
+use crate::mechanism::NaturalCoordinates;
+use crate::record::{ProblemRecord, Record};
+use serde::Deserialize;
 
 mod body;
 mod candidate;
@@ -100,7 +102,37 @@ fn page_with_drawings(record: &Record, shown: Shown, drawings: &[&str], extent: 
     .render()
 }
 
-pub use body::{linkage_json, problem_json};
+/// A report's problem, and the linkage that it shows first.
+#[derive(Clone, Debug)]
+pub struct Held {
+    /// The problem; `None` if it has more than 1000 points, of which the report holds some.
+    pub problem: Option<ProblemRecord>,
+    /// The linkage; `None` if nothing was found.
+    pub linkage: Option<NaturalCoordinates>,
+}
+
+/// Returns what a report holds; `None` if the text is no report, nor the data of one.
+pub fn held(text: &str) -> Option<Held> {
+    #[derive(Deserialize)]
+    struct Shown {
+        key: String,
+        linkage: NaturalCoordinates,
+    }
+    #[derive(Deserialize)]
+    struct Data {
+        first: String,
+        mechanisms: Vec<Shown>,
+        problem: Option<ProblemRecord>,
+    }
+    // The last element of this kind: no text of a record can write markup, and none stands behind.
+    let data = match text.rsplit_once(r#"<script type="application/json" id="data">"#) {
+        Some((_, after)) => after.split_once("</script>")?.0,
+        None => text,
+    };
+    let Data { first, mechanisms, problem } = serde_json::from_str(data).ok()?;
+    let linkage = mechanisms.into_iter().find(|one| one.key == first).map(|one| one.linkage);
+    Some(Held { problem, linkage })
+}
 
 /// Returns the report's header on the whole run, as markup: the outcome, the obstacles, and the changes that would
 /// help.

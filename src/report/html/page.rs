@@ -99,7 +99,18 @@ pub(super) fn still(drawing: &str) -> Markup {
 /// Returns data as JSON that no text inside can break out of: every `<` is written as `\u003c`.
 pub(in crate::report) fn embedded(data: &impl Serialize) -> String {
     // The data has string keys and no maps, so that it can always be written.
-    serde_json::to_string(data).unwrap_or_default().replace('<', "\\u003c")
+    let json = serde_json::to_string(data).unwrap_or_default();
+    let mut out = String::with_capacity(json.len());
+    for c in json.chars() {
+        // Characters that end an element, or that hide or turn what stands beside them. They are in texts alone.
+        let hides = matches!(c, '<' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{ffff}');
+        if hides || c.is_control() {
+            out.push_str(&format!("\\u{:04x}", u32::from(c)));
+        } else {
+            out.push(c);
+        }
+    }
+    out
 }
 
 /// Returns ES modules as one script in a scope of its own. Each has to follow those that it imports; `import` has to be
