@@ -317,6 +317,8 @@ test("a limit on all of the linkage is a slider, a box shows it; a bad name is m
   await page.locator("#name").fill("my leg");
   await page.keyboard.press("Tab");
   assert.equal(await page.locator("#name").getAttribute("aria-invalid"), "false");
+  const { asked, doing: what } = await page.evaluate(() => ({ ...document.body.dataset }));
+  assert.deepEqual([asked, what], ["1", "done"], "a name is searched by nobody");
   assert.match(await problemText(page), /name = "my leg"/);
   // Two thousand points: as many as can be searched are taken of them.
   await tab(page, "points");

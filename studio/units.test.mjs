@@ -18,8 +18,17 @@ async function part(name) {
 }
 
 const { moved, ofStroke, ofText, segmentAt } = await part("target");
-const { drawnAnew, extentTimes, longestTimes, nearestInstead, pivotsBelow, withExtent, withLengthsTimes, withLongest } =
-  await part("task");
+const {
+  drawnAnew,
+  extentTimes,
+  isSameButForName,
+  longestTimes,
+  nearestInstead,
+  pivotsBelow,
+  withExtent,
+  withLengthsTimes,
+  withLongest,
+} = await part("task");
 const view = await part("view");
 const words = await part("words");
 const { followed, placeOf } = await part("choice");
@@ -351,4 +360,10 @@ test("a linkage keeps its number while it follows", () => {
   const choice = { candidate: shown(7, 0) };
   assert.equal(followed(choice, [shown(8, 1), shown(7, 60)]).candidate.number, 7);
   assert.equal(followed(choice, [shown(8, 1), shown(9, 90)]).candidate.number, 8, "else the nearest");
+});
+
+test("a problem under another name is the same one", () => {
+  const task = { name: "a", points: [[0, 0]], closed: false, types: [], seed: 1 };
+  assert.ok(isSameButForName(task, { seed: 1, types: [], closed: false, points: [[0, 0]], name: "b", source: "x" }));
+  assert.ok(!isSameButForName(task, { ...task, name: "b", seed: 2 }));
 });

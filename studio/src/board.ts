@@ -282,10 +282,11 @@ export class Board {
     const circles = spots.flatMap(([cx, cy], i) =>
       radii[i] > 1.5 ? [shape("circle", { class: "allowed", cx: px(cx), cy: px(cy), r: px(radii[i]) })] : [],
     );
-    const empty =
-      spots.length === 0
-        ? [shape("text", { class: "invitation", x: px(this.width / 2), y: px(this.height / 2) }, ["Draw a path here"])]
-        : [];
+    const isSeen = spots.some(([x, y]) => x >= 0 && y >= 0 && x <= this.width && y <= this.height);
+    const invites = spots.length === 0 ? "Draw a path here" : isSeen ? "" : "The path is out of sight: Show all";
+    const empty = invites
+      ? [shape("text", { class: "invitation", x: px(this.width / 2), y: px(this.height / 2) }, [invites])]
+      : [];
     this.back.replaceChildren(
       ...empty,
       ...circles,

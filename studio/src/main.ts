@@ -347,6 +347,12 @@ class Page {
 
   /** Takes a task: shown, remembered, sent. */
   private put(edited: Task, how: { moving?: boolean; fresh?: boolean; from?: Linkage }) {
+    // Another name is no reason to search again.
+    if (edited.name !== this.task.name && !how.fresh && tasks.isSameButForName(edited, this.task)) {
+      this.task = edited;
+      this.draw();
+      return this.settle();
+    }
     const task = tasks.withoutStale(this.task, edited);
     if (edited.expect && !task.expect)
       this.desk.say(

@@ -263,6 +263,12 @@ function asked(task: Task): string {
   ]);
 }
 
+/** Whether two are one problem under other names. */
+export function isSameButForName(one: Task, other: Task): boolean {
+  const nameless = ({ name: _n, source: _s, ...rest }: Task) => JSON.stringify(Object.entries(rest).sort());
+  return nameless(one) === nameless(other);
+}
+
 /** An edited task: what was known of the answer of the one before goes where it is no longer the same problem. */
 export function withoutStale(before: Task, task: Task): Task {
   const { expect, ...rest } = task;
