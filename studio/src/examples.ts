@@ -120,7 +120,8 @@ const EGG = drawn(
 
 const EIGHT = drawn(
   "figure-eight",
-  around(48, (t) => [42 * Math.sin(t), 17 * Math.sin(2 * t) + 5 * Math.cos(t)]),
+  around(48, (t) => [42 * Math.sin(t), 12 * Math.sin(2 * t) + 3 * Math.cos(t)]),
+  25,
 );
 
 /** A drop with its point at the right. */

@@ -30,7 +30,8 @@ export class Nine {
       return button;
     });
     this.choices.append(...this.buttons);
-    place.append(this.choices, this.words);
+    const summary = element("summary", {}, ["How many there are, and what is proved"]);
+    place.append(this.choices, element("details", {}, [summary, this.words]));
   }
 
   /** Hears an answer: the census is told in words. */
