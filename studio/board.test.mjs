@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { test } from "node:test";
-import { begun, button, doing, house, shots, status, tab } from "./harness.mjs";
+import { begun, button, doing, example, house, shots, status, tab } from "./harness.mjs";
 
 const home = house("board");
 
@@ -174,6 +174,47 @@ test("a card, the status and the whole path are in sight at every size, and the 
       assert.deepEqual(outside, [], `${wide} x ${high}`);
     }
   }
+  assert.deepEqual(said, []);
+  await context.close();
+  await end();
+});
+
+test("nine points with all their linkages change no layout", async () => {
+  const { page, said, context, end } = await begun(home);
+  await doing(page, "done");
+  const layout = () =>
+    page.evaluate(() =>
+      ["#board", "#board > :first-child", ".rail", "#status", ".tabs", "#desk"].map((one) => {
+        const { x, y, width, height } = document.querySelector(one).getBoundingClientRect();
+        return [one, x, y, width, height].join(" ");
+      }),
+    );
+  const counts = [];
+  for (const [wide, high] of [
+    [1280, 900],
+    [1440, 700],
+    [844, 390],
+    [390, 844],
+  ]) {
+    await page.setViewportSize({ width: wide, height: high });
+    await example(page, 0);
+    await doing(page, "done");
+    const before = await layout();
+    await example(page, 5);
+    await doing(page, "done");
+    counts.push(await page.locator("#strip li").count());
+    assert.deepEqual(await layout(), before, `${wide} x ${high}`);
+    const all = await page.evaluate(() => [document.documentElement.scrollHeight - innerHeight, scrollY]);
+    assert.ok(all[0] <= 0 && all[1] === 0, "no page scroll");
+    if (shots) await page.screenshot({ path: join(shots, `nine-${wide}.png`) });
+  }
+  // Cards out of sight draw nothing.
+  const [drawn, cards] = await page.evaluate(() => [
+    [...document.querySelectorAll("#strip .bar")].filter((one) => one.getAttribute("d")).length,
+    document.querySelectorAll("#strip li").length,
+  ]);
+  console.log(`${counts[0]} linkages through nine points; ${drawn} of ${cards} cards are drawn`);
+  assert.ok(counts[0] > 12 && drawn < cards);
   assert.deepEqual(said, []);
   await context.close();
   await end();

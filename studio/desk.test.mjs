@@ -6,7 +6,18 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { deflateRawSync } from "node:zlib";
-import { studio as begun, doing, house, opened as openedIn, program, shots, tab } from "./harness.mjs";
+import {
+  studio as begun,
+  doing,
+  drawer,
+  gone,
+  house,
+  opened as openedIn,
+  program,
+  shots,
+  tab,
+  timing,
+} from "./harness.mjs";
 
 const home = house("desk");
 const { work } = home;
@@ -109,6 +120,7 @@ test("saved searches: begun, watched, stopped, gone on, opened, compared; a relo
   const first = await studio("18592", folder);
   const { page, said, context } = await opened(first.address);
   await done(page);
+  await drawer(page, "searches");
   await page.locator("#job-name").fill("short one");
   await page.locator("#job-budget").fill("200000");
   await page.locator("#job-start").click();
@@ -157,6 +169,7 @@ test("saved searches: begun, watched, stopped, gone on, opened, compared; a relo
   // A reload: it runs on.
   await page.reload();
   await state(page, "long one", "running");
+  await drawer(page, "searches");
   await row.getByRole("button", { name: "Stop" }).click();
   await state(page, "long one", "stopped");
   await page.waitForFunction(() => document.querySelector("#desk-said").textContent.startsWith("long one: stopped."));
@@ -165,7 +178,7 @@ test("saved searches: begun, watched, stopped, gone on, opened, compared; a relo
   // The studio ends, and another begins.
   assert.equal(await first.end(), 0);
   const second = await studio("18592", folder);
-  await page.goto(second.address);
+  await gone(page, second.address);
   await state(page, "long one", "stopped");
   await state(page, "short one", "done");
   assert.deepEqual(
@@ -179,6 +192,7 @@ test("saved searches: begun, watched, stopped, gone on, opened, compared; a relo
     [],
   );
   // Opened: its problem is on the board, its candidates below.
+  await drawer(page, "searches");
   await page.locator("#jobs li", { hasText: "short one" }).getByRole("button", { name: "Open" }).click();
   await page.waitForFunction(() => document.querySelector("#details-title").textContent === "short one, candidate");
   assert.equal(await page.locator("#tolerance").inputValue(), "");
@@ -188,6 +202,7 @@ test("saved searches: begun, watched, stopped, gone on, opened, compared; a relo
   await page.locator("#details-pin").click();
   assert.equal(await page.getByRole("button", { name: "Unpin pinned 1" }).count(), 1);
   // Compared with each other.
+  await drawer(page, "searches");
   for (const name of ["short one", "long one"]) await page.getByLabel(`Compare ${name}`).check();
   await page.locator("#job-compare").click();
   await page.waitForSelector("#comparison tbody tr:nth-child(2)");
@@ -290,7 +305,7 @@ test("how fast it answers", async () => {
   assert.equal(await page.locator("#point-count").textContent(), "60");
   const firsts = await page.evaluate(() => performance.getEntriesByName("first candidate").map((one) => one.duration));
   console.log(
-    `first candidate on the screen, 60 points, measured in the page: ${median(firsts).toFixed(0)} ms after the pen went up (median of ${firsts.length}: ${firsts.map((ms) => ms.toFixed(0)).join(" ")}); aim 300`,
+    `first candidate on the screen, 60 points, measured in the page: ${median(firsts).toFixed(0)} ms after the pen went up (median of ${firsts.length}: ${firsts.map((ms) => ms.toFixed(0)).join(" ")}); at most 300`,
   );
   await done(page);
   const handle = await page.evaluate(() => {
@@ -300,17 +315,32 @@ test("how fast it answers", async () => {
   await page.evaluate(() => performance.clearMeasures());
   await page.mouse.move(...handle);
   await page.mouse.down();
+  await page.evaluate(() => {
+    window.frames_ = 0;
+    window.since_ = performance.now();
+    const count = () => {
+      window.frames_ += 1;
+      window.counting_ = requestAnimationFrame(count);
+    };
+    window.counting_ = requestAnimationFrame(count);
+  });
   const start = Date.now();
   for (let i = 1; Date.now() - start < 3000; i += 1) {
     await page.mouse.move(handle[0], handle[1] + 25 * Math.sin(i / 12));
   }
+  const frames = await page.evaluate(() => {
+    cancelAnimationFrame(window.counting_);
+    return (1000 * window.frames_) / (performance.now() - window.since_);
+  });
   await page.mouse.up();
   const gaps = await page.evaluate(() => performance.getEntriesByName("re-fit").map((one) => one.duration));
   const rate = (1000 * gaps.length) / gaps.reduce((sum, gap) => sum + gap, 0);
   console.log(
-    `re-fits on the screen while dragging one of 60 points, measured in the page: ${rate.toFixed(1)} a second (median gap ${median(gaps).toFixed(0)} ms, ${gaps.length} gaps); aim 30`,
+    `re-fits on the screen while dragging one of 60 points, measured in the page: ${rate.toFixed(1)} a second (median gap ${median(gaps).toFixed(0)} ms, ${gaps.length} gaps); at least 30`,
   );
+  console.log(`frames while dragging one of 60 points: ${frames.toFixed(1)} a second; at least 55`);
   assert.ok(gaps.length >= 2, `${gaps.length} re-fits in three seconds`);
+  if (timing) assert.ok(median(firsts) < 300 && rate >= 30 && frames >= 55);
   assert.ok(median(firsts) < 10_000);
   await context.close();
   await end();

@@ -8,6 +8,7 @@ import {
   button,
   doing,
   example,
+  gone,
   house,
   problemText,
   shots,
@@ -351,8 +352,7 @@ test("each tab keeps its own drawing; another problem from the command line is a
     join(work, "results"),
     join(problems, "examples/pivot-box.toml"),
   );
-  await page.goto(second.address);
-  if (process.env.PAGE) await page.goto(new URL("/", second.address).href);
+  await gone(page, second.address);
   await page.waitForFunction(() => document.querySelector("#left").value === "-20");
   assert.equal(await button(page, "Unpin pinned 1").count(), 1);
   await button(page, "Undo").click();

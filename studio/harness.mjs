@@ -10,6 +10,8 @@ import { chromium } from "playwright-core";
 export const program = process.env.LINKWRIGHT;
 /** Where pictures go; none are taken without it. */
 export const shots = process.env.SCREENSHOTS;
+/** Times are asserted only where they are asked for: a busy machine is no fault of the page. */
+export const timing = process.env.TIMING !== undefined;
 /** A folder with the page to be tested in place of the one in the program. */
 const built = process.env.PAGE;
 
@@ -57,6 +59,12 @@ export async function studio(...options) {
   };
 }
 
+/** Goes to an address that the studio has printed. */
+export async function gone(page, address) {
+  await page.goto(address);
+  if (built && address.includes("token=")) await page.goto(new URL("/", address).href);
+}
+
 /** A page of it, watched: what the console says is kept. In a context of its own, or one more in `context`. */
 export async function opened(browser, address, { context: shared, ...options } = {}) {
   const context =
@@ -78,8 +86,7 @@ export async function opened(browser, address, { context: shared, ...options } =
     }
   }
   const page = await context.newPage();
-  await page.goto(address);
-  if (built && address.includes("token=")) await page.goto(new URL("/", address).href);
+  await gone(page, address);
   const said = [];
   page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => said.push(`error: ${error.message}`));
@@ -121,6 +128,11 @@ export const doing = (page, what) =>
 
 /** Opens a tab beside the board. */
 export const tab = (page, name) => page.locator(`#tab-${name}`).click();
+
+/** Opens a drawer below the board: the details, or the saved searches. */
+export async function drawer(page, name) {
+  if (!(await page.locator(`#${name}`).evaluate((one) => one.open))) await page.locator(`#${name} > summary`).click();
+}
 
 /** Loads an example of the gallery by its number. */
 export async function example(page, number) {

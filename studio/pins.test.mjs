@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { button, doing, example, house, shots, begun as started, status, tab } from "./harness.mjs";
+import { button, doing, drawer, example, house, shots, begun as started, status, tab } from "./harness.mjs";
 
 const problems = new URL("../problems/", import.meta.url).pathname;
 const home = house("pins");
@@ -115,6 +115,7 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   assert.equal(own.name, "walking-leg-pinned-2.toml");
   // Compared with each other and with the one on the board, by the names that they have here.
   await page.locator(".pick", { hasText: "Linkage 2" }).click();
+  await drawer(page, "searches");
   await button(page, "Compare").click();
   await page.waitForSelector("#comparison tbody tr:nth-child(4)");
   const names = (await page.locator("#comparison tbody th").allTextContents()).map((text) =>
@@ -124,6 +125,7 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   assert.doesNotMatch(await page.locator("#comparison").textContent(), /not true/);
   await shot(page, "compared");
   // A pin's target is drawn again, and that is one step.
+  await drawer(page, "details");
   await card.click();
   await page.waitForFunction(
     () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
@@ -200,6 +202,7 @@ test("a long search is of what is drawn, under its name, with the budget of the 
   await doing(page, "done");
   assert.equal(await page.locator("#job-name").getAttribute("placeholder"), "straight-stroke");
   assert.equal(await page.locator("#job-name").inputValue(), "");
+  await drawer(page, "searches");
   await page.locator("#job-start").click();
   await page.waitForFunction(() => document.querySelector("#jobs li")?.dataset.state === "done", null, {
     timeout: 60_000,
@@ -207,13 +210,13 @@ test("a long search is of what is drawn, under its name, with the budget of the 
   assert.equal(asked.length, 1);
   assert.deepEqual([asked[0].ask.name, asked[0].set], ["straight-stroke", undefined]);
   assert.equal(await page.locator("#job-name").getAttribute("placeholder"), "straight-stroke-2");
-  // Opened and pinned, it has its own target; the focus stays in its row.
+  // Opened and pinned, it has its own target; the focus goes with the drawer that opens.
   await page.getByRole("button", { name: "Open straight-stroke" }).focus();
   await page.keyboard.press("Enter");
   await page.waitForFunction(
     () => document.querySelector("#details-title").textContent === "straight-stroke, candidate",
   );
-  assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "Open straight-stroke");
+  assert.ok(await page.evaluate(() => document.activeElement.matches("#details > summary")));
   await page.locator("#details-pin").click();
   assert.equal(await button(page, "Unpin pinned 1").count(), 1);
   await context.close();

@@ -231,6 +231,17 @@ test("a path that is opened fills more than 35 % of the shorter side, with what 
   assert.equal(view.joined([[Number.NaN, 0, 1, 1]]), null);
 });
 
+test("in a smaller frame the path is kept in sight at its scale, and a view that holds it stays", () => {
+  const frame = { width: 600, height: 200 };
+  const at = { x: 0, y: 0, scale: 2 };
+  assert.deepEqual(view.inSight(at, frame, [-20, -10, 20, 10]), at);
+  const moved = view.inSight(at, frame, [-20, -100, 20, -70]);
+  assert.deepEqual([moved.x, moved.scale], [0, 2]);
+  assert.ok(view.isWithin([-20, -100, 20, -70], view.windowOf(moved, frame)));
+  assert.ok(Math.abs(moved.y) < 100, "no farther than it must");
+  assert.deepEqual(view.inSight(at, frame, [-20, -300, 20, 0]), at, "no room for it");
+});
+
 test("words for a figure: how near, how it transmits, what limits it", () => {
   assert.deepEqual(words.nearnessInWords({ rms: 0.2, max: 0.5 }, 100), {
     grade: "good",
@@ -335,6 +346,21 @@ test("a joint is dragged as far as the locks let it, and the linkage is that of 
     "design.B": "[[40, 40], [0, 0]]",
     "design.ground": "[40, 40]",
   });
+  // A locked direction: a pivot goes along its line, rounding keeps it, and two pivots that stay need nothing more.
+  const turned = { ...pose, B: [40, 30] };
+  const along = grab.dragged(turned, "B", [60, 20], new Set(["ground_angle_deg"]));
+  assert.ok(Math.abs(along.B[1] - 0.75 * along.B[0]) < 1e-9 && along.B[0] > 40);
+  assert.deepEqual(grab.dragged(turned, "B", [60, 20], new Set(["ground_angle_deg", "ground"])), turned);
+  const lines = grab.roundedTo(grab.ofPose({ ...turned, B: [40.4, 30.3] }), 0.5, new Set(["ground_angle_deg"]));
+  assert.ok(Math.abs(lines.B[1] - 0.75 * lines.B[0]) < 1e-9 && Math.abs(Math.hypot(...lines.B) - 50.5) < 1e-9);
+  assert.deepEqual(Object.keys(grab.keptBy(linkage, new Set(["ground_angle_deg", "a"]))), [
+    "design.ground_angle_deg",
+    "design.a",
+  ]);
+  assert.deepEqual(Object.keys(grab.keptBy(linkage, new Set(["A", "B", "ground", "ground_angle_deg"]))), [
+    "design.A",
+    "design.B",
+  ]);
 });
 
 test("more points than can be searched become fewer along the same path; an exact wish that fails offers the nearest", () => {

@@ -1,22 +1,9 @@
 // What the page asks of the studio over HTTP: see /openapi.json.
 
 import type { Reading, Shown, Solution, Task } from "./messages";
-import type { Details, JobList, JobShown, Opened, Source } from "./wire";
+import type { Compared, Details, JobList, JobShown, Opened, Source } from "./wire";
 
-export type { Details, JobList, JobShown, Opened, Source };
-
-export interface Compared {
-  unit: string | null;
-  notes: string[];
-  rows: {
-    rank: number;
-    label: string;
-    accepted: boolean;
-    on_front: boolean;
-    type: string;
-    figures: Record<"rms" | "max" | "transmission" | "link_ratio" | "size", number | null>;
-  }[];
-}
+export type { Compared, Details, JobList, JobShown, Opened, Source };
 
 /** An answer that is not what was asked for, in the studio's words. */
 export class Refused extends Error {}

@@ -5,6 +5,8 @@ import type { Box, Point, Task } from "./messages";
 import { roundTo } from "./task";
 
 export type BoxKind = "pivots_in" | "footprint_in";
+/** The least side of a box, in pixels. */
+export const LEAST = 12;
 export const KINDS: BoxKind[] = ["pivots_in", "footprint_in"];
 
 const SAYS: Record<BoxKind, string> = { pivots_in: "fixed pivots in here", footprint_in: "everything in here" };
@@ -70,17 +72,21 @@ export function boxShapes(task: Task, toPixel: (p: Point) => Point, chosen: Corn
         height: px(Math.max(bottom - top, 0)),
       }),
       shape("text", { class: "number", x: px(left + 6), y: px(top + 15) }, [SAYS[kind]]),
-      ...NAMES.map((_, corner) => {
+      ...NAMES.flatMap((_, corner) => {
         const [x, y] = toPixel(cornerOf(box, corner));
         const here = chosen?.kind === kind && chosen.corner === corner;
-        return shape("rect", {
-          class: `corner${here ? " chosen" : ""}`,
-          x: px(x - 6),
-          y: px(y - 6),
-          width: 12,
-          height: 12,
-          "data-corner": `${kind}:${corner}`,
-        });
+        const name = { "data-corner": `${kind}:${corner}` };
+        return [
+          shape("rect", {
+            class: `corner${here ? " chosen" : ""}`,
+            x: px(x - 6),
+            y: px(y - 6),
+            width: 12,
+            height: 12,
+            ...name,
+          }),
+          shape("circle", { class: "touch", cx: px(x), cy: px(y), r: 11, ...name }),
+        ];
       }),
     ];
   });

@@ -30,10 +30,8 @@ export class BuildPanel {
   private plates = element("div", { id: "plates", role: "img", "aria-label": "The plates to cut", hidden: "" });
   private fault = element("p", { class: "fault", role: "alert" });
   private layers = element("pre", { id: "layers", tabindex: "0", "aria-label": "Layers and clearances" });
-  private dxf = element("button", { type: "button", id: "save-dxf" }, ["DXF for a laser"]) as HTMLButtonElement;
-  private save = element("button", { type: "button", id: "save-archive" }, [
-    "Save everything (zip)",
-  ]) as HTMLButtonElement;
+  private dxf = element("button", { id: "save-dxf" }, ["DXF for a laser"]) as HTMLButtonElement;
+  private save = element("button", { id: "save-archive" }, ["Save everything (zip)"]) as HTMLButtonElement;
   private legs = element("p", { class: "note", hidden: "" }, [
     "These are the plates of one leg: cut them once for each leg.",
   ]);

@@ -4,6 +4,7 @@ import { element, figure } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import {
   dragged,
+  groundAngle,
   type Joint,
   keptBy,
   LENGTHS,
@@ -28,6 +29,7 @@ const NAMES: Record<Lock, string> = {
   ground: "ground AB",
   A: "pivot A",
   B: "pivot B",
+  ground_angle_deg: "direction of AB",
 };
 /** Half a millimetre in the units of lengths; without a unit a length counts as one of a millimetre. */
 const HALVES: Record<string, number> = { mm: 0.5, cm: 0.05, m: 0.0005, in: 1 / 64 };
@@ -55,7 +57,7 @@ export class ByHand {
   isChanged = false;
   private quality = element("p", { class: "quality" });
   private rows = new Map<Lock, { field: HTMLInputElement | null; lock: HTMLInputElement }>();
-  private round = element("button", { type: "button", id: "hand-round" }, ["Round to 0.5 mm"]);
+  private round = element("button", { id: "hand-round" }, ["Round to 0.5 mm"]);
 
   constructor(
     private place: HTMLElement,
@@ -67,7 +69,7 @@ export class ByHand {
       element("tbody", {}, this.makeRows()),
     ]);
     const button = (id: string, text: string, act: () => void) => {
-      const made = element("button", { type: "button", id }, [text]);
+      const made = element("button", { id }, [text]);
       made.addEventListener("click", act);
       return made;
     };
@@ -84,16 +86,16 @@ export class ByHand {
   }
 
   private makeRows() {
-    return (["A", "B", ...LENGTHS] as Lock[]).map((name) => {
+    return (["A", "B", ...LENGTHS, "ground_angle_deg"] as Lock[]).map((name) => {
       const lock = element("input", { type: "checkbox", "aria-label": `Lock ${NAMES[name]}` }) as HTMLInputElement;
       lock.addEventListener("change", () => {
         if (lock.checked) this.locks.add(name);
         else this.locks.delete(name);
       });
-      const isPlace = name === "A" || name === "B" || name === "ground";
-      const field = isPlace
-        ? null
-        : (element("input", { type: "number", min: "0", step: "any", "aria-label": NAMES[name] }) as HTMLInputElement);
+      const isLength = name.length === 1 && name >= "a";
+      const field = isLength
+        ? (element("input", { type: "number", min: "0", step: "any", "aria-label": NAMES[name] }) as HTMLInputElement)
+        : null;
       field?.addEventListener("change", () => {
         if (!this.shown || !(field.valueAsNumber > 0)) return this.show();
         this.host.note();
@@ -193,16 +195,17 @@ export class ByHand {
       if (field && document.activeElement !== field)
         field.value = String(Number(shown.linkage[name as "a"].toPrecision(5)));
     }
-    for (const span of this.place.querySelectorAll<HTMLElement>("[data-figures]")) {
-      const name = span.dataset.figures as "A" | "B" | "ground";
-      span.textContent =
-        name === "ground"
-          ? figure(lengthOf(shown.linkage, name), 5)
-          : shown.linkage[name].map((x) => figure(x, 5)).join(", ");
-    }
+    for (const span of this.place.querySelectorAll<HTMLElement>("[data-figures]"))
+      span.textContent = figuresOf(shown.linkage, span.dataset.figures as Lock);
   }
 
   solution(): Solution | null {
     return this.shown && { shown: this.shown, task: this.host.task() };
   }
+}
+
+/** What has no field of its own, in figures: a place, the distance of the pivots, their direction. */
+function figuresOf(linkage: Linkage, name: Lock): string {
+  if (name === "A" || name === "B") return linkage[name].map((x) => figure(x, 5)).join(", ");
+  return name === "ground_angle_deg" ? `${figure(groundAngle(linkage), 4)}°` : figure(lengthOf(linkage, "ground"), 5);
 }

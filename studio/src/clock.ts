@@ -11,9 +11,15 @@ export class Clock {
   part = 0;
   private going = false;
   private last = 0;
+  /** Whether the page is not seen. */
+  private waiting = false;
 
   /** `tick` shows a part of the motion. */
-  constructor(private tick: (part: number) => void) {}
+  constructor(private tick: (part: number) => void) {
+    document.addEventListener("visibilitychange", () => {
+      if (this.waiting && !document.hidden) this.frame(performance.now());
+    });
+  }
 
   get playing() {
     return this.going;
@@ -35,6 +41,9 @@ export class Clock {
 
   private frame(now: number) {
     if (!this.going) return;
+    // Nothing is asked of the browser until the page is seen again.
+    this.waiting = document.hidden;
+    if (this.waiting) return;
     if (now - this.last >= BETWEEN) {
       // After a pause of the browser it goes on from where it was.
       this.set(this.part + Math.min(now - this.last, 100) / 1000 / TURN);

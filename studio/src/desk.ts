@@ -1,4 +1,4 @@
-// The desk below the board: everything about the chosen linkage, long searches, sharing. It knows the page by Host alone.
+// The desk below the board, in drawers: everything about the chosen linkage, long searches, sharing. It knows the page by Host alone.
 
 import { element } from "../../src/report/html/player/svg.mjs";
 import { DetailsPanel } from "./details";
@@ -31,7 +31,7 @@ export class Desk {
   private share: Share;
 
   private said = element("p", { id: "desk-said", role: "status", "aria-live": "polite" }) as HTMLParagraphElement;
-  private close = element("button", { type: "button", class: "drop", "aria-label": "Close this message", hidden: "" }, [
+  private close = element("button", { class: "drop", "aria-label": "Close this message", hidden: "" }, [
     "×",
   ]) as HTMLButtonElement;
   private timer = 0;
@@ -44,6 +44,12 @@ export class Desk {
     this.details = new DetailsPanel(place, host);
     this.jobs = new JobsPanel(place, host, (name, task) => this.details.ofJob(name, 1, task));
     this.share = new Share(sharePlace, host);
+    place.addEventListener("keydown", (event) => {
+      const open = event.key === "Escape" && place.querySelector<HTMLDetailsElement>("details.desk-card[open]");
+      if (!open) return;
+      open.open = false;
+      open.querySelector("summary")?.focus();
+    });
     void this.jobs.refresh();
   }
 

@@ -119,19 +119,17 @@ class AnglesPlayer extends Player {
 }
 
 export class DetailsPanel {
-  private panel = element("details", { class: "desk-card", id: "details" }) as HTMLDetailsElement;
+  private panel = element("details", { class: "desk-card", id: "details", name: "desk" }) as HTMLDetailsElement;
   private title = element("h3", { id: "details-title" });
   private candidates = element("select", { id: "details-candidate", "aria-label": "Candidate" }) as HTMLSelectElement;
-  private keep = element("button", { type: "button", id: "details-pin" }, ["Pin it"]) as HTMLButtonElement;
-  private take = element("button", { type: "button", id: "details-take", hidden: "" }, [
-    "Draw its target",
-  ]) as HTMLButtonElement;
+  private keep = element("button", { id: "details-pin" }, ["Pin it"]) as HTMLButtonElement;
+  private take = element("button", { id: "details-take", hidden: "" }, ["Draw its target"]) as HTMLButtonElement;
   private format = element(
     "select",
     { id: "format", "aria-label": "Format" },
     FORMATS.map(([name, , words]) => element("option", { value: name }, [words])),
   ) as HTMLSelectElement;
-  private save = element("button", { type: "button", id: "export" }, ["Save"]) as HTMLButtonElement;
+  private save = element("button", { id: "export" }, ["Save"]) as HTMLButtonElement;
   private stage = element("div", { class: "details-stage" });
   private charts = element("div", { class: "details-charts" });
   private words = element("div", { class: "details-words" });
@@ -154,7 +152,7 @@ export class DetailsPanel {
     const head = element("div", { class: "row" }, [this.title, this.candidates, this.keep, this.take]);
     const files = element("div", { class: "row" }, [element("label", {}, ["As a file: ", this.format]), this.save]);
     this.panel.append(
-      element("summary", {}, [element("h2", {}, ["Everything about this linkage"])]),
+      element("summary", {}, [element("h2", {}, ["All about this linkage"])]),
       this.nothing,
       head,
       files,
@@ -181,7 +179,10 @@ export class DetailsPanel {
   ofJob(name: string, rank: number, task: Task | null) {
     this.job = { name, rank };
     this.jobTask = task;
+    // One drawer is open at a time: what was clicked is in the other one.
+    const isWithin = document.activeElement?.closest("details.desk-card") ?? this.panel;
     this.panel.open = true;
+    if (isWithin !== this.panel) this.panel.querySelector("summary")?.focus();
     this.changed(true);
   }
 

@@ -11,7 +11,7 @@ const [WIDTH, HEIGHT] = [104, 76];
 
 export class Gallery {
   private pictures: Picture[] = [];
-  private close = element("button", { type: "button", class: "drop", "aria-label": "Close the examples" }, ["×"]);
+  private close = element("button", { class: "drop", "aria-label": "Close the examples" }, ["×"]);
 
   constructor(
     private place: HTMLElement,
@@ -24,10 +24,7 @@ export class Gallery {
       const picture = new Picture(WIDTH, HEIGHT, 0.45);
       if (shown) picture.show(movingOf(shown, task.points), task.points, task.closed, 0);
       this.pictures.push(picture);
-      const button = element("button", { type: "button", class: "example" }, [
-        picture.svg,
-        element("span", {}, [name]),
-      ]);
+      const button = element("button", { class: "example" }, [picture.svg, element("span", {}, [name])]);
       button.addEventListener("click", () => {
         this.open(false);
         take(example);

@@ -71,7 +71,7 @@ export class Helps {
     this.told = key;
     const items = relaxations.map(({ set, rms }) => {
       const what = set.map((change) => inWords(change.key, change.from, change.to, unit)).join(" and ");
-      const button = element("button", { type: "button" }, [what]);
+      const button = element("button", {}, [what]);
       button.addEventListener("click", () =>
         this.take((task) => set.reduce((next, change) => changed(next, change.key, change.to), task), what),
       );
@@ -83,7 +83,7 @@ export class Helps {
       ]);
     });
     if (instead) {
-      const button = element("button", { type: "button" }, [instead.said]);
+      const button = element("button", {}, [instead.said]);
       button.addEventListener("click", () => this.take(() => instead.task, instead.said));
       items.push(element("li", {}, [button]));
     }
@@ -128,7 +128,7 @@ export class Kept {
     const items = all.map(([name, value]) => {
       const item = element("li", {}, [element("code", {}, [`${name} = ${value}`])]);
       if (task.kept?.[name] === undefined) return item;
-      const drop = element("button", { type: "button", class: "drop", "aria-label": `Let go ${name}` }, ["×"]);
+      const drop = element("button", { class: "drop", "aria-label": `Let go ${name}` }, ["×"]);
       drop.addEventListener("click", () =>
         this.change((now) => {
           const { [name]: _, ...kept } = now.kept ?? {};

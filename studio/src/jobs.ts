@@ -40,9 +40,7 @@ class Row {
 
   constructor(name: string, act: (what: "open" | "stop" | "resume", name: string) => void) {
     const button = (what: "open" | "stop" | "resume", words: string) => {
-      const made = element("button", { type: "button", "aria-label": `${words} ${name}` }, [
-        words,
-      ]) as HTMLButtonElement;
+      const made = element("button", { "aria-label": `${words} ${name}` }, [words]) as HTMLButtonElement;
       made.addEventListener("click", () => made.getAttribute("aria-disabled") !== "true" && act(what, name));
       return made;
     };
@@ -124,9 +122,9 @@ export class JobsPanel {
     private host: Host,
     private details: (name: string, task: Task | null) => void,
   ) {
-    const begin = element("button", { type: "button", id: "job-start" }, ["Search long"]);
-    const compare = element("button", { type: "button", id: "job-compare" }, ["Compare"]);
-    const page = element("button", { type: "button", id: "job-compare-page" }, ["Save the comparison"]);
+    const begin = element("button", { id: "job-start" }, ["Search long"]);
+    const compare = element("button", { id: "job-compare" }, ["Compare"]);
+    const page = element("button", { id: "job-compare-page" }, ["Save the comparison"]);
     const form = element("div", { class: "row job-form" }, [
       element("label", {}, ["Name ", this.name]),
       element("label", {}, ["tries at most ", this.budget]),
@@ -134,8 +132,8 @@ export class JobsPanel {
       begin,
     ]);
     place.append(
-      element("section", { class: "desk-card", "aria-label": "Saved searches" }, [
-        this.heading,
+      element("details", { class: "desk-card", id: "searches", name: "desk" }, [
+        element("summary", {}, [this.heading]),
         element("p", { class: "quiet" }, [
           "A long search of what is drawn now; its result is saved in a folder, as linkwright synth saves it, and goes on when this page is closed.",
         ]),

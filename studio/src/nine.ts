@@ -21,7 +21,7 @@ export class Nine {
     changed: () => void,
   ) {
     this.buttons = LEVELS.map((name, level) => {
-      const button = element("button", { type: "button" }, [name]) as HTMLButtonElement;
+      const button = element("button", {}, [name]) as HTMLButtonElement;
       button.addEventListener("click", () => {
         this.least = level;
         this.show();

@@ -1,8 +1,9 @@
 // The panel of the photograph: chosen, moved, scaled by two clicks and a length, by numbers for who uses keys.
 
 import { figure } from "../../src/report/html/player/svg.mjs";
-import type { Board, Tool } from "./board";
+import type { Board } from "./board";
 import { changing } from "./focus";
+import type { Tool } from "./surface";
 import type { Underlay } from "./underlay";
 
 const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;

@@ -76,8 +76,8 @@ export class Share {
     place: HTMLElement,
     private host: Host,
   ) {
-    const copy = element("button", { type: "button", id: "copy-link" }, ["Copy a web link"]);
-    const take = element("button", { type: "button", id: "take-link" }, ["Take the link"]);
+    const copy = element("button", { id: "copy-link" }, ["Copy a web link"]);
+    const take = element("button", { id: "take-link" }, ["Take the link"]);
     const file = element("input", {
       type: "file",
       id: "open-problem",

@@ -22,7 +22,7 @@ const asked = (task: Task) => KEYS.filter(([, of]) => of(task)).map(([key]) => N
 
 export class Stays {
   private words = element("span");
-  private drop = element("button", { type: "button" }, ["Ask nothing but the path"]);
+  private drop = element("button", {}, ["Ask nothing but the path"]);
 
   constructor(
     private place: HTMLElement,

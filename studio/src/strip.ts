@@ -88,7 +88,7 @@ class Card {
   private quality = element("span", { class: "quality" });
   private figures = element("span", { class: "figures" });
   private verdict = element("span", { class: "verdict" });
-  readonly pick = element("button", { type: "button", class: "pick" }, [
+  readonly pick = element("button", { class: "pick" }, [
     this.picture.svg,
     this.title,
     this.marks,
@@ -96,7 +96,7 @@ class Card {
     this.figures,
     this.verdict,
   ]);
-  readonly pin = element("button", { type: "button", class: "pin-button" });
+  readonly pin = element("button", { class: "pin-button" });
   readonly node = element("li", { class: "card" }, [this.pick, this.pin]);
 
   constructor(onPick: () => void, onPin: () => void) {

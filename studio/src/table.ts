@@ -67,9 +67,9 @@ export class Table {
   private inputs: HTMLInputElement[][] = [];
   private head = element("thead");
   private body = element("tbody");
-  private earlier = element("button", { type: "button" }, ["Earlier"]);
-  private later = element("button", { type: "button" }, ["Later"]);
-  private add = element("button", { type: "button" }, ["Add a point"]);
+  private earlier = element("button", {}, ["Earlier"]);
+  private later = element("button", {}, ["Later"]);
+  private add = element("button", {}, ["Add a point"]);
   private pages = element("span", { class: "pages" });
   private label = element("span");
 
@@ -161,7 +161,7 @@ export class Table {
           return input;
         });
         this.inputs.push(cells);
-        const drop = element("button", { type: "button", class: "drop", "aria-label": `Remove point ${row}` }, ["×"]);
+        const drop = element("button", { class: "drop", "aria-label": `Remove point ${row}` }, ["×"]);
         drop.addEventListener("click", () => this.task && this.edit(withRemoved(this.task, row)));
         return element("tr", {}, [
           element("th", { scope: "row" }, [String(row)]),

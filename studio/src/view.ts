@@ -27,7 +27,7 @@ const FILLED = 0.42;
 const LEAST_FILLED = 0.36;
 const [LEAST, MOST] = [1e-7, 1e7];
 /** Pixels between what is brought into view and the rim. */
-const RIM = 38;
+const RIM = 46;
 
 /** The view of an empty board. */
 export const opening = (unit: string | undefined): View => ({
@@ -95,6 +95,17 @@ export function around(frame: Frame, [left, low, right, high]: Box): View {
     (frame.height - 2 * RIM) / Math.max(high - low, size / 50),
   );
   return { x: (left + right) / 2, y: (low + high) / 2, scale: limited(scale) };
+}
+
+/** The view moved as little as brings a box into a frame that has become smaller; the scale stays. A box without room in
+ * it moves nothing. */
+export function inSight(view: View, frame: Frame, [left, low, right, high]: Box): View {
+  const rim = RIM / 2;
+  const [wide, tall] = [(frame.width / 2 - rim) / view.scale, (frame.height / 2 - rim) / view.scale];
+  if (right - left > 2 * wide || high - low > 2 * tall) return view;
+  const near = (middle: number, from: number, to: number, half: number) =>
+    Math.min(Math.max(middle, to - half), from + half);
+  return { ...view, x: near(view.x, left, right, wide), y: near(view.y, low, high, tall) };
 }
 
 /** What of the plane is in view. */

@@ -72,6 +72,32 @@ export type Source =
       drawn: Drawn;
     };
 /**
+ * A defect of a motion through the points, with the points at which it occurs (counted from 0).
+ */
+export type Defect =
+  | {
+      /**
+       * The points at which the motion would have to jump back; `[0]` where it returns to its first point only
+       * through all others in reverse.
+       */
+      at: number[];
+      kind: "order";
+    }
+  | {
+      /**
+       * The points on another branch than point 0, or reached only by way of one.
+       */
+      at: number[];
+      kind: "branch";
+    }
+  | {
+      /**
+       * The points that cannot be reached from point 0.
+       */
+      at: number[];
+      kind: "circuit";
+    };
+/**
  * The state of a job.
  */
 export type JobState = "running" | "done" | "stopped" | "broken-off" | "elsewhere" | "failed" | "unreadable";
@@ -88,7 +114,10 @@ export interface Wire {
   Change: Change;
   ClosingPolicy: ClosingPolicy;
   CompareAsk: CompareAsk;
+  Compared: Compared;
+  ComparedRow: ComparedRow;
   Counted: Counted;
+  Defect: Defect;
   Details: Details;
   DetailsAsk: DetailsAsk;
   DirectionPolicy: DirectionPolicy;
@@ -100,6 +129,7 @@ export interface Wire {
   ExpectedCensus: ExpectedCensus;
   ExportAsk: ExportAsk;
   Form: Form;
+  FourBar: FourBar;
   JobAsk: JobAsk;
   JobList: JobList;
   JobProgress: JobProgress;
@@ -109,6 +139,7 @@ export interface Wire {
   JudgeAsk: JudgeAsk;
   Kind: Kind;
   Known: Known;
+  LeftOut: LeftOut;
   LinkageAsk: LinkageAsk;
   LinkageType: LinkageType;
   Method: Method;
@@ -127,6 +158,7 @@ export interface Wire {
   Sure: Sure;
   Text: Text;
   TimingSpec: TimingSpec;
+  Tool: Tool;
   TransmissionOver: TransmissionOver;
   TypedValue: TypedValue;
   Unit: Unit;
@@ -619,6 +651,212 @@ export interface Drawn {
    * The assembly (1 or -1) at each point.
    */
   t1_at: number[];
+}
+/**
+ * Linkages side by side.
+ */
+export interface Compared {
+  /**
+   * The version of the format.
+   */
+  format: number;
+  /**
+   * The figures that the front is of.
+   *
+   * @minItems 3
+   * @maxItems 3
+   */
+  front_of: [string, string, string];
+  /**
+   * What could not be compared.
+   */
+  left_out: LeftOut[];
+  /**
+   * Remarks in words.
+   */
+  notes: string[];
+  /**
+   * The label of the one that the others are compared with.
+   */
+  reference?: string;
+  /**
+   * The linkages, better first.
+   */
+  rows: ComparedRow[];
+  /**
+   * Whether all were found for one target.
+   */
+  same_target: boolean;
+  /**
+   * Whether the lengths of all are in one unit.
+   */
+  same_unit: boolean;
+  /**
+   * The figures by which they are ranked, in order.
+   */
+  sort: string[];
+  tool: Tool;
+  /**
+   * The unit of all lengths; null where they have none in common.
+   */
+  unit?: string;
+}
+/**
+ * An input without figures.
+ */
+export interface LeftOut {
+  /**
+   * The name of the input.
+   */
+  label: string;
+  /**
+   * The reason why it has no figures.
+   */
+  why: string;
+}
+/**
+ * A linkage among others.
+ */
+export interface ComparedRow {
+  /**
+   * Whether it meets everything that was asked of it.
+   */
+  accepted: boolean;
+  /**
+   * By how much it is worse than the best, in per cent of the first figure.
+   */
+  behind_percent?: number;
+  /**
+   * The crank angle at each point, degrees.
+   */
+  crank_deg: number[];
+  defects: Defect[];
+  /**
+   * Its figures by their names.
+   */
+  figures: {
+    [k: string]: number | null;
+  };
+  label: string;
+  linkage: FourBar;
+  /**
+   * The point with the largest error.
+   */
+  max_at: number;
+  /**
+   * Whether it is a candidate of a run.
+   */
+  of_run: boolean;
+  /**
+   * Whether none of the others is better in all figures of the front.
+   */
+  on_front: boolean;
+  /**
+   * By how much each figure is above that of the reference.
+   */
+  percent_above_reference?: {
+    [k: string]: number | null;
+  };
+  /**
+   * Its place, from 1.
+   */
+  rank: number;
+  /**
+   * Its place by each of the figures by which they are ranked.
+   */
+  ranks: {
+    [k: string]: number | null;
+  };
+  /**
+   * The figures for which its record has other values.
+   */
+  recorded_differently: string[];
+  /**
+   * The name of its target.
+   */
+  target: string;
+  /**
+   * The motion over which the transmission angle is judged.
+   */
+  transmission_over: string;
+  type: string;
+  unit?: string;
+  /**
+   * The requirements that it does not meet.
+   */
+  unmet: string[];
+}
+/**
+ * A four-bar linkage: fixed pivots, five lengths and two signs.
+ *
+ * ```
+ * use linkwright::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+ * let linkage = FourBar::new(NaturalCoordinates {
+ *     crank_pivot: [0.0, 0.0], follower_pivot: [4.0, 1.0],
+ *     crank: 2.0, coupler: 5.0, follower: 5.0, crank_side: 5.0, follower_side: 5.0,
+ *     assembly: AssemblyMode::Plus, side: CouplerSide::Plus,
+ * })?;
+ * let joints = linkage.position(0.3).joints().unwrap();
+ * assert!(((joints.follower_pin - joints.crank_pin).norm() - 5.0).abs() < 1e-14);
+ * # Ok::<(), linkwright::LinkageError>(())
+ * ```
+ */
+export interface FourBar {
+  /**
+   * The fixed pivot of the crank.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  A: [number, number];
+  /**
+   * The fixed pivot of the follower.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  B: [number, number];
+  /**
+   * |AC|.
+   */
+  a: number;
+  /**
+   * |CD|.
+   */
+  b: number;
+  /**
+   * |BD|.
+   */
+  c: number;
+  /**
+   * |CP|.
+   */
+  d: number;
+  /**
+   * |DP|.
+   */
+  e: number;
+  /**
+   * Which intersection D takes: 1 = left of C -> B.
+   */
+  t1: number;
+  /**
+   * Which side of C -> D carries P: 1 = left.
+   */
+  t2: number;
+}
+/**
+ * Name and version of the program.
+ */
+export interface Tool {
+  /**
+   * linkwright.
+   */
+  name: string;
+  /**
+   * The version.
+   */
+  version: string;
 }
 /**
  * The report's text on a linkage, with its figures.

@@ -48,7 +48,7 @@ export function longestOf({ A, B, a, b, c, d, e }: Shown["linkage"]): number {
 /** The longest link as a multiple of the path. */
 export function sizeInWords(linkage: Shown["linkage"], size: number, extent?: number): string {
   const times = (length: number) => Number((length / size).toPrecision(2));
-  const whole = extent === undefined ? "" : `, whole ${times(extent)} ×`;
+  const whole = extent === undefined ? "" : `, whole ${times(extent)}\u00a0×`;
   return `longest link ${times(longestOf(linkage))} × the path${whole}`;
 }
 

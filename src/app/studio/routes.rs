@@ -15,6 +15,7 @@ use super::server::{live, page};
 use super::tab::BUG;
 use crate::files::{linkage_file, name};
 use crate::mechanism::FourBar;
+use crate::report::compare::Comparison;
 use axum::body::Bytes;
 use axum::extract::{Path, State};
 use axum::http::{StatusCode, header};
@@ -102,6 +103,11 @@ impl Route {
     /// Returns the route with another media type of its answer.
     fn giving(self, media_type: &'static str) -> Route {
         Route { gives: Body::Other(media_type), ..self }
+    }
+
+    /// Returns the route with JSON of another type as its answer.
+    fn giving_json(self, schema: fn(&mut SchemaGenerator) -> Schema) -> Route {
+        Route { gives: Body::Json(schema), ..self }
     }
 
     /// Returns the route with another status of success than 200.
@@ -226,7 +232,7 @@ fn routes_of_linkages() -> Vec<Route> {
         Route::asked("/export", UNREADABLE, |house, ask: ExportAsk| Ok(house.file(&ask)?))
             .summed_up("A linkage as a file, as `linkwright export` and `linkwright report` write it."),
         Route::asked("/compare", UNREADABLE, |house, ask: CompareAsk| Ok(house.compared(&ask)?))
-            .giving(JSON)
+            .giving_json(Comparison::schema)
             .summed_up("Linkages side by side, as `linkwright compare` puts them."),
     ]
 }

@@ -7,7 +7,9 @@ use crate::report::csv::{Column, PARAMETERS, cells, figures, names, parameters, 
 use crate::report::text::{cell, exact};
 use crate::report::words;
 use crate::task::Defect;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// The version of the format of [`Comparison::json`].
 pub const JSON_FORMAT: u32 = 1;
@@ -39,48 +41,92 @@ fn number(value: Option<f64>) -> String {
     value.map_or(String::new(), exact)
 }
 
-#[derive(Serialize)]
+/// Linkages side by side.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Compared")]
 struct Json<'a> {
+    /// The version of the format.
     format: u32,
+    /// The program that has compared them.
     tool: Tool,
+    /// The figures by which they are ranked, in order.
     sort: Vec<&'static str>,
+    /// The unit of all lengths; null where they have none in common.
     unit: Option<&'static str>,
+    /// Whether all were found for one target.
     same_target: bool,
+    /// Whether the lengths of all are in one unit.
     same_unit: bool,
+    /// The figures that the front is of.
     front_of: [&'static str; 3],
+    /// The label of the one that the others are compared with.
     reference: Option<&'a str>,
+    /// The linkages, better first.
     rows: Vec<Row<'a>>,
+    /// What could not be compared.
     left_out: &'a [LeftOut],
+    /// Remarks in words.
     notes: Vec<String>,
 }
 
-#[derive(Serialize)]
+/// A linkage among others.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "ComparedRow")]
 struct Row<'a> {
+    /// Its place, from 1.
     rank: usize,
     label: &'a str,
+    /// Whether it is a candidate of a run.
     of_run: bool,
+    /// The name of its target.
     target: &'a str,
+    /// Whether it meets everything that was asked of it.
     accepted: bool,
+    /// Whether none of the others is better in all figures of the front.
     on_front: bool,
+    /// Its place by each of the figures by which they are ranked.
     ranks: Figures<usize>,
+    /// By how much it is worse than the best, in per cent of the first figure.
     behind_percent: Option<f64>,
+    /// Its figures by their names.
     figures: Figures<f64>,
+    /// By how much each figure is above that of the reference.
     #[serde(skip_serializing_if = "Option::is_none")]
     percent_above_reference: Option<Figures<f64>>,
+    /// The point with the largest error.
     max_at: usize,
     #[serde(rename = "type")]
     linkage_type: &'static str,
+    /// The motion over which the transmission angle is judged.
     transmission_over: &'static str,
     unit: Option<&'static str>,
     linkage: &'a FourBar,
+    /// The crank angle at each point, degrees.
     crank_deg: &'a [f64],
     defects: &'a [Defect],
+    /// The requirements that it does not meet.
     unmet: Vec<&'a str>,
+    /// The figures for which its record has other values.
     recorded_differently: &'a [String],
 }
 
 /// The values for some keys, as an object in their order; a missing value is null.
 struct Figures<T>(Vec<(SortKey, Option<T>)>);
+
+impl<T: JsonSchema> JsonSchema for Figures<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Figures".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let value = generator.subschema_for::<T>();
+        json_schema!({ "type": "object", "additionalProperties": { "oneOf": [value, { "type": "null" }] } })
+    }
+}
 
 impl<T: Serialize> Serialize for Figures<T> {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -118,6 +164,11 @@ impl<'a> Row<'a> {
 }
 
 impl Comparison {
+    /// Returns the schema of [`Comparison::json`].
+    pub fn schema(generator: &mut SchemaGenerator) -> Schema {
+        generator.subschema_for::<Json<'static>>()
+    }
+
     /// Returns one row for each entry, every number to the last digit: place, figures and parameters; with several keys a
     /// column `rank_KEY` for each follows, with a reference a column `KEY_percent_above` for each figure.
     pub fn csv(&self) -> String {

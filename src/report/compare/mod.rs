@@ -120,7 +120,7 @@ impl Ranked {
 }
 
 /// An input without figures.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 pub struct LeftOut {
     /// The name of the input.
     pub label: String,
