@@ -8,6 +8,7 @@
 //! | [`job`] | jobs: one run from a problem to its record, the result's folder and files, checkpoints |
 //! | [`studio`] | a local page that answers while a target is drawn |
 //! | [`suite`] | the suite: benchmark problems whose answer is known, each run from many seeds, and compared with the population searches at equal evaluations and with published answers |
+//! | [`sweep`] | sweeps: a plan of many problems, its shards of jobs, and their merged rows |
 
 #[cfg(feature = "cli")]
 pub mod cli;
@@ -17,3 +18,4 @@ pub mod job;
 #[cfg(feature = "studio")]
 pub mod studio;
 pub mod suite;
+pub mod sweep;
