@@ -3,7 +3,8 @@
 use super::position::Kernel;
 use crate::mechanism::FourBar;
 use crate::numbers::arithmetic::dispatch::vectorised;
-use crate::numbers::arithmetic::lane::{F64x8, LANES};
+use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
+use crate::numbers::arithmetic::sine::sin_cos_block;
 
 /// The places for x and y of the moving joints at each crank angle.
 #[derive(Debug)]
@@ -39,34 +40,42 @@ impl FourBar {
     pub fn positions(&self, crank_angles: &[f64], joints: JointColumns<'_>) {
         let n = crank_angles.len();
         let JointColumns { crank_pin, follower_pin, coupler_point } = joints;
-        let places = [&mut crank_pin[..n], &mut follower_pin[..n], &mut coupler_point[..n]];
+        let columns = [&mut crank_pin[..n], &mut follower_pin[..n], &mut coupler_point[..n]];
         let kernel = Kernel::new(self);
-        let [c, d, p] = places.map(|column| column.chunks_mut(LANES));
-        for (angles, ((c, d), p)) in crank_angles.chunks(LANES).zip(c.zip(d).zip(p)) {
-            let (mut sin, mut cos) = ([0.0; LANES], [0.0; LANES]);
-            for (i, angle) in angles.iter().enumerate() {
-                (sin[i], cos[i]) = angle.sin_cos();
-            }
-            let mut block = [[[0.0; 2]; LANES]; 3];
-            vectorised(
-                #[inline(always)]
-                || {
-                    let at = kernel.at(F64x8(cos), F64x8(sin));
-                    let columns = [at.crank_pin, at.follower_pin, at.coupler_point];
-                    for i in 0..LANES {
-                        let reached = at.gap.0[i] >= 0.0
-                            && at.coupler_point[0].0[i].is_finite()
-                            && at.coupler_point[1].0[i].is_finite();
-                        let lost = if reached { 0.0 } else { f64::NAN };
-                        for (joint, [x, y]) in columns.iter().enumerate() {
-                            block[joint][i] = if reached { [x.0[i], y.0[i]] } else { [lost; 2] };
-                        }
-                    }
-                },
-            );
-            for (place, block) in [c, d, p].into_iter().zip(&block) {
-                place.copy_from_slice(&block[..place.len()]);
-            }
+        vectorised(
+            #[inline(always)]
+            || {
+                let [c, d, p] = columns.map(|column| column.as_chunks_mut::<LANES>());
+                let (blocks, rest) = crank_angles.as_chunks::<LANES>();
+                for (angles, ((c, d), p)) in blocks.iter().zip(c.0.iter_mut().zip(d.0).zip(p.0)) {
+                    block(&kernel, angles, [c, d, p]);
+                }
+                let (mut angles, mut last) = ([0.0; LANES], [[[0.0; 2]; LANES]; 3]);
+                angles[..rest.len()].copy_from_slice(rest);
+                let [ends_c, ends_d, ends_p] = &mut last;
+                block(&kernel, &angles, [ends_c, ends_d, ends_p]);
+                for (place, ends) in [c.1, d.1, p.1].into_iter().zip(&last) {
+                    place.copy_from_slice(&ends[..place.len()]);
+                }
+            },
+        );
+    }
+}
+
+/// Computes C, D and P at a block of crank angles, NaN where the loop is open.
+#[inline(always)]
+fn block(kernel: &Kernel, angles: &[f64; LANES], places: [&mut [[f64; 2]; LANES]; 3]) {
+    let (sin, cos) = sin_cos_block(angles);
+    let at = kernel.at(F64x8(cos), F64x8(sin));
+    let [px, py] = at.coupler_point;
+    let zero = F64x8::splat(0.0);
+    // x - x is NaN for infinities and NaN, zero for all other numbers.
+    let finite = (px - px) + (py - py);
+    let lost = at.gap.at_least(zero, finite, F64x8::splat(f64::NAN));
+    for (place, [x, y]) in places.into_iter().zip([at.crank_pin, at.follower_pin, at.coupler_point]) {
+        let (x, y) = (x + lost, y + lost);
+        for i in 0..LANES {
+            place[i] = [x.0[i], y.0[i]];
         }
     }
 }
