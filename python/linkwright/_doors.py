@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     Subject = Union["Result", "Candidate", FourBar, Path]
 
 from . import _linkwright
+from ._files import write
 from ._problems import as_problem
 from ._result import Candidate, Result, _frame, listener, open, wrap
 
@@ -395,11 +396,7 @@ def write_file(linkage: Any, path: Path, format: str | None, settings: Mapping[s
             raise _linkwright.ProblemError(
                 f"{os.fspath(path)}: no format has this ending; give format=, one of {listed}"
             )
-    made = export(linkage, format, **settings)
-    from ._result import open_file
-
-    with open_file(path, "wb") as file:
-        file.write(made)
+    write(path, export(linkage, format, **settings))
 
 
 class Suite:

@@ -36,11 +36,14 @@ class Problem:
     def parse(text: str) -> Problem:
         """Reads the problem of a text in the format of a problem file."""
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """The name."""
     @property
-    def source(self) -> str | None: ...
+    def source(self) -> str | None:
+        """The source of the problem, in words."""
     @property
-    def unit(self) -> str | None: ...
+    def unit(self) -> str | None:
+        """The unit of its lengths: mm, cm, m or in."""
     @property
     def resolved(self) -> dict[str, Any]:
         """Every key with its default filled in."""
@@ -48,7 +51,8 @@ class Problem:
     def best_known_sum_sq(self) -> float | None:
         """The least sum of squares known, of a problem that states it."""
     @property
-    def warnings(self) -> list[str]: ...
+    def warnings(self) -> list[str]:
+        """Warnings about values that are ignored or cannot succeed."""
     @property
     def digest(self) -> str:
         """SHA-256 of everything that determines a search."""
@@ -106,7 +110,7 @@ class FourBar:
     >>> import linkwright as lw, math
     >>> linkage = lw.FourBar((0, 0), (4, 1), 2, 5, 5, 5, 5, t1=1, t2=1)
     >>> linkage.type
-    'double-rocker'
+    'crank-rocker'
     >>> at = linkage.positions([0.3, math.nan])
     >>> at.C.round(3).tolist()
     [[1.911, 0.591], [nan, nan]]
@@ -128,30 +132,41 @@ class FourBar:
         unit: str | None = None,
     ) -> FourBar: ...
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """The name."""
     @property
-    def unit(self) -> str | None: ...
+    def unit(self) -> str | None:
+        """The unit of its lengths: mm, cm, m or in."""
     @property
-    def A(self) -> tuple[float, float]: ...
+    def A(self) -> tuple[float, float]:
+        """The fixed pivot of the crank."""
     @property
-    def B(self) -> tuple[float, float]: ...
+    def B(self) -> tuple[float, float]:
+        """The fixed pivot of the follower."""
     @property
-    def a(self) -> float: ...
+    def a(self) -> float:
+        """|AC|, the crank."""
     @property
-    def b(self) -> float: ...
+    def b(self) -> float:
+        """|CD|, the coupler."""
     @property
-    def c(self) -> float: ...
+    def c(self) -> float:
+        """|BD|, the follower."""
     @property
-    def d(self) -> float: ...
+    def d(self) -> float:
+        """|CP|."""
     @property
-    def e(self) -> float: ...
+    def e(self) -> float:
+        """|DP|."""
     @property
     def ground(self) -> float:
         """|AB|."""
     @property
-    def t1(self) -> int: ...
+    def t1(self) -> int:
+        """1: D lies left of the line from C to B; -1: right."""
     @property
-    def t2(self) -> int: ...
+    def t2(self) -> int:
+        """1: P lies left of the line from C to D; -1: right."""
     @property
     def type(self) -> str | None:
         """crank-rocker, rocker-crank, double-crank, double-rocker, triple-rocker or change-point; None: no linkage."""
@@ -178,7 +193,7 @@ class FourBar:
         """Returns the text of its linkage file."""
     def cognates(self) -> list[FourBar]:
         """Returns the other linkages of the same coupler curve."""
-    def __eq__(self, other: object) -> bool: ...
+    def __eq__(self, value: object, /) -> bool: ...
     def __hash__(self) -> int: ...
     def __reduce__(self) -> tuple[Callable[[str], FourBar | Chain], tuple[str]]: ...
 
@@ -187,9 +202,11 @@ class Chain:
     """A compound mechanism of a crank and stages, from :func:`linkwright.load`."""
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """The name."""
     @property
-    def unit(self) -> str | None: ...
+    def unit(self) -> str | None:
+        """The unit of its lengths: mm, cm, m or in."""
     @property
     def names(self) -> list[str]:
         """The names of the points: pivots, the crank's joint, then one point a stage."""
@@ -214,7 +231,8 @@ class Run:
     """A record with everything that follows from it; :class:`linkwright.Result` is the class to use."""
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """The name."""
     @property
     def folder(self) -> os.PathLike[str] | None: ...
     @property
@@ -240,6 +258,8 @@ def load(path: _Path) -> FourBar | Chain:
 
     Raises ProblemError: the file is refused; the text names the line, the fault and the remedy.
     """
+
+__all__: list[str]
 
 def synth(
     problem: Problem,
@@ -306,6 +326,15 @@ def suite(
     progress: _Progress | None = None,
 ) -> list[str]: ...
 def schema(kind: str) -> dict[str, Any]: ...
+def sweep_plan(sweep: _Path, out: _Path, shard_size: int | None, records: bool, force: bool) -> None: ...
+def sweep_open(folder: _Path) -> dict[str, Any]: ...
+def sweep_missing(folder: _Path) -> list[int]: ...
+def sweep_run(
+    folder: _Path, shard: int | None, threads: int | None, progress: _Progress | None
+) -> tuple[int, int, int, int, int]: ...
+def sweep_merge(folder: _Path) -> tuple[int, int]: ...
 def main(words: list[str]) -> int: ...
+def _time_positions(linkage: FourBar, phi: ArrayLike) -> tuple[float, float]: ...
+def _time_synth(problem: Problem, times: int, threads: int) -> float: ...
 def _panic() -> None: ...
 def _panic_here() -> None: ...

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     Progress = Union[bool, Callable[[dict[str, Any]], object], None]
 
 from . import _linkwright
+from ._files import write
 from ._problems import as_problem
 
 
@@ -242,8 +243,7 @@ class Result:
     def to_file(self, path: str | os.PathLike[str], format: str | None = None, **settings: Any) -> None:
         """Writes the best linkage to a file; see :meth:`Candidate.to_file`. ``html`` writes the report."""
         if format == "html" or (format is None and str(path).lower().endswith(".html")):
-            with open_file(path, "w", encoding="utf-8") as file:
-                file.write(self._run.report_html())
+            write(path, self._run.report_html().encode())
             return
         self._best().to_file(path, format, **settings)
 
@@ -290,9 +290,6 @@ class Result:
         n = len(self)
         best = f", best {self.candidates[0]!r}" if n else ""
         return f"<Result {self.name!r}: {n} candidate{'' if n == 1 else 's'}{best}>"
-
-
-open_file = open
 
 
 def open(path: str | os.PathLike[str]) -> Result:  # noqa: A001

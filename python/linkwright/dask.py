@@ -74,19 +74,15 @@ def sweep(
         if client is not None:
             _run(plan, client, callback, patience_s)
         elif plan.missing():
-            import dask
             from distributed import Client as New
             from distributed import LocalCluster
 
             # Workers of one thread each: one that dies takes one shard with it.
-            with (
-                dask.config.set({"distributed.worker.daemon": False}),
-                LocalCluster(
-                    n_workers=os.cpu_count() or 1, threads_per_worker=1, dashboard_address=None,
-                    silence_logs=logging.ERROR,
-                ) as cluster,
-                New(cluster) as own,
-            ):  # fmt: skip
+            here = {
+                "n_workers": os.cpu_count() or 1, "threads_per_worker": 1, "dashboard_address": None,
+                "silence_logs": logging.ERROR,
+            }  # fmt: skip
+            with LocalCluster(**here) as cluster, New(cluster, set_as_default=False) as own:
                 _run(plan, own, callback, patience_s)
     finally:
         close()
@@ -127,7 +123,7 @@ def _run(
     told({"phase": "sweep", "done": done, "total": plan.shards})
     while missing:
         _wait_for_scheduler(client, patience_s)
-        flying: dict[str, tuple[int, Any]] = {}
+        flying: dict[Any, tuple[int, Any]] = {}
         completed = as_completed(loop=client.loop)
         room, looked = _room(client), time.monotonic()
         try:
@@ -178,17 +174,14 @@ class _Lost(Exception):
 def _outcome(future: Any) -> BaseException | None:
     """Returns None for a complete shard, else what to do about it; raises what a retry cannot mend."""
     from distributed import KilledWorker
-    from distributed.client import FutureCancelledError
 
     if future.status == "finished":
         return None
-    if future.status in ("cancelled", "lost", "pending"):
+    if future.status != "error":
         return _Lost()
     error: BaseException = future.exception(timeout=10)
     if isinstance(error, KilledWorker):
         return error
-    if isinstance(error, FutureCancelledError):
-        return _Lost()
     raise error
 
 

@@ -9,7 +9,7 @@ use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A compound mechanism of a crank and stages.
+/// A compound mechanism of a crank and stages, from :func:`linkwright.load`.
 #[pyclass(frozen, module = "linkwright._linkwright")]
 pub struct Chain {
     pub name: String,
@@ -75,36 +75,43 @@ impl Chain {
 
 #[pymethods]
 impl Chain {
+    /// The name.
     #[getter]
     fn name(&self) -> &str {
         &self.name
     }
 
+    /// The unit of its lengths: mm, cm, m or in.
     #[getter]
     fn unit(&self) -> Option<&'static str> {
         self.unit.map(Unit::label)
     }
 
+    /// The names of the points: pivots, the crank's joint, then one point a stage.
     #[getter]
     fn names(&self) -> Vec<String> {
         self.chain.names().to_vec()
     }
 
+    /// The name of the point whose path is shown.
     #[getter]
     fn trace(&self) -> &str {
         &self.chain.names()[self.chain.trace().index()]
     }
 
+    /// The links, each as the names of its points.
     #[getter]
     fn links(&self) -> Vec<Vec<String>> {
         let name = |id: &PointId| self.chain.names()[id.index()].clone();
         self.chain.links().iter().map(|link| link.iter().map(name).collect()).collect()
     }
 
+    /// Computes every point at crank angles (radians); NaN of and after a stage that does not close.
     fn positions<'py>(&self, py: Python<'py>, phi: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
         guarded(|| self.computed(py, phi, Asked::Position))
     }
 
+    /// Computes the velocity of every point, for a crank speed in rad/s.
     #[pyo3(signature = (phi, omega = 1.0))]
     fn velocities<'py>(
         &self,
@@ -115,6 +122,7 @@ impl Chain {
         guarded(|| self.computed(py, phi, Asked::Velocity { omega }))
     }
 
+    /// Computes the acceleration of every point.
     #[pyo3(signature = (phi, omega = 1.0, alpha = 0.0))]
     fn accelerations<'py>(
         &self,
@@ -126,6 +134,7 @@ impl Chain {
         guarded(|| self.computed(py, phi, Asked::Acceleration { omega, alpha }))
     }
 
+    /// Returns the text of its linkage file.
     fn to_toml(&self) -> &str {
         &self.text
     }

@@ -84,7 +84,9 @@ fn unfit(subject: &Bound<'_, PyAny>) -> PyErr {
     PyTypeError::new_err(format!("a result, a candidate, a linkage or a path is needed, not {kind}"))
 }
 
-/// Reads the linkage of a file, of any kind.
+/// Reads the linkage of a file: a four-bar or a chain.
+///
+/// Raises ProblemError: the file is refused; the text names the line, the fault and the remedy.
 #[pyfunction]
 pub fn load<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyAny>> {
     guarded(|| {

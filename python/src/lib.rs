@@ -12,6 +12,8 @@
 //! | [`pools`] | thread pools that are kept between calls, fork-safe |
 //! | [`problem`] | the class of problems |
 //! | [`run`] | the class of runs; synth, front and opening |
+//! | [`sweeping`] | sweeps: plan, run, merge |
+//! | [`timing`] | the library's own times, for the benchmark |
 //! | [`values`] | values of Python as those of a problem file, and JSON as values of Python |
 //! | [`waiting`] | work on a pool while the calling thread looks for signals |
 
@@ -24,6 +26,8 @@ mod linkage;
 mod pools;
 mod problem;
 mod run;
+mod sweeping;
+mod timing;
 mod values;
 mod waiting;
 
@@ -57,8 +61,15 @@ fn _linkwright(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(doors::export_formats, module)?)?;
     module.add_function(wrap_pyfunction!(doors::suite, module)?)?;
     module.add_function(wrap_pyfunction!(doors::schema, module)?)?;
+    module.add_function(wrap_pyfunction!(timing::_time_positions, module)?)?;
+    module.add_function(wrap_pyfunction!(timing::_time_synth, module)?)?;
     module.add_function(wrap_pyfunction!(doors::_panic, module)?)?;
     module.add_function(wrap_pyfunction!(doors::_panic_here, module)?)?;
+    //    module.add_function(wrap_pyfunction!(sweeping::sweep_plan, module)?)?;
+    //    module.add_function(wrap_pyfunction!(sweeping::sweep_open, module)?)?;
+    //    module.add_function(wrap_pyfunction!(sweeping::sweep_missing, module)?)?;
+    //    module.add_function(wrap_pyfunction!(sweeping::sweep_run, module)?)?;
+    //    module.add_function(wrap_pyfunction!(sweeping::sweep_merge, module)?)?;
     #[cfg(feature = "command")]
     module.add_function(wrap_pyfunction!(doors::main, module)?)?;
     Ok(())

@@ -14,6 +14,20 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// A planar four-bar linkage.
+///
+/// A, B: fixed pivots of crank and follower. C, D: moving pins. P: coupler point. a = |AC| crank, b = |CD| coupler,
+/// c = |BD| follower, d = |CP|, e = |DP|. t1 = 1: D lies left of the line from C to B; t2 = 1: P lies left of the line
+/// from C to D.
+///
+/// Raises ProblemError for lengths of no linkage.
+///
+/// >>> import linkwright as lw, math
+/// >>> linkage = lw.FourBar((0, 0), (4, 1), 2, 5, 5, 5, 5, t1=1, t2=1)
+/// >>> linkage.type
+/// 'crank-rocker'
+/// >>> at = linkage.positions([0.3, math.nan])
+/// >>> at.C.round(3).tolist()
+/// [[1.911, 0.591], [nan, nan]]
 #[pyclass(frozen, module = "linkwright._linkwright")]
 #[derive(Clone)]
 pub struct FourBar {
@@ -21,28 +35,36 @@ pub struct FourBar {
     pub file: LinkageFile,
 }
 
-/// Positions of the moving joints.
+/// Positions of the moving joints; NaN where the loop does not close. Shape: that of the crank angles, and 2.
 #[pyclass(frozen, module = "linkwright._linkwright")]
 pub struct Positions {
+    /// The crank pin.
     #[pyo3(get, name = "C")]
     crank_pin: Py<PyArrayDyn<f64>>,
+    /// The follower pin.
     #[pyo3(get, name = "D")]
     follower_pin: Py<PyArrayDyn<f64>>,
+    /// The coupler point.
     #[pyo3(get, name = "P")]
     coupler_point: Py<PyArrayDyn<f64>>,
 }
 
-/// Velocities, or accelerations, of the moving joints and links.
+/// Velocities or accelerations; NaN where the loop does not close and at toggles.
 #[pyclass(frozen, module = "linkwright._linkwright")]
 pub struct Rates {
+    /// Of the crank pin: length a second, or a second squared; shape (n, 2).
     #[pyo3(get, name = "C")]
     crank_pin: Py<PyArrayDyn<f64>>,
+    /// Of the follower pin.
     #[pyo3(get, name = "D")]
     follower_pin: Py<PyArrayDyn<f64>>,
+    /// Of the coupler point.
     #[pyo3(get, name = "P")]
     coupler_point: Py<PyArrayDyn<f64>>,
+    /// Of the coupler: rad/s, or rad/s^2; shape (n,).
     #[pyo3(get)]
     coupler: Py<PyArrayDyn<f64>>,
+    /// Of the follower: rad/s, or rad/s^2; shape (n,).
     #[pyo3(get)]
     follower: Py<PyArrayDyn<f64>>,
 }
@@ -101,7 +123,10 @@ impl FourBar {
 #[pymethods]
 impl FourBar {
     #[new]
-    #[pyo3(signature = (A, B, a, b, c, d, e, t1 = 1, t2 = -1, *, name = "linkage", unit = None))]
+    #[pyo3(
+        signature = (A, B, a, b, c, d, e, t1 = 1, t2 = -1, *, name = "linkage", unit = None),
+        text_signature = "(A, B, a, b, c, d, e, t1=1, t2=-1, *, name='linkage', unit=None)"
+    )]
     #[expect(non_snake_case, reason = "the letters of a linkage file")]
     #[expect(clippy::too_many_arguments, reason = "the parameters of a four-bar")]
     fn new(
@@ -135,88 +160,105 @@ impl FourBar {
         })
     }
 
+    /// The name.
     #[getter]
     fn name(&self) -> &str {
         &self.file.name
     }
 
+    /// The unit of its lengths: mm, cm, m or in.
     #[getter]
     fn unit(&self) -> Option<&'static str> {
         self.file.unit.map(Unit::label)
     }
 
+    /// The fixed pivot of the crank.
     #[getter]
     #[pyo3(name = "A")]
     fn crank_pivot(&self) -> (f64, f64) {
         self.file.linkage.natural_coordinates().crank_pivot.into()
     }
 
+    /// The fixed pivot of the follower.
     #[getter]
     #[pyo3(name = "B")]
     fn follower_pivot(&self) -> (f64, f64) {
         self.file.linkage.natural_coordinates().follower_pivot.into()
     }
 
+    /// |AC|, the crank.
     #[getter]
     fn a(&self) -> f64 {
         self.file.linkage.crank()
     }
 
+    /// |CD|, the coupler.
     #[getter]
     fn b(&self) -> f64 {
         self.file.linkage.coupler()
     }
 
+    /// |BD|, the follower.
     #[getter]
     fn c(&self) -> f64 {
         self.file.linkage.follower()
     }
 
+    /// |CP|.
     #[getter]
     fn d(&self) -> f64 {
         self.file.linkage.crank_side()
     }
 
+    /// |DP|.
     #[getter]
     fn e(&self) -> f64 {
         self.file.linkage.follower_side()
     }
 
+    /// |AB|.
     #[getter]
     fn ground(&self) -> f64 {
         self.file.linkage.ground()
     }
 
+    /// 1: D lies left of the line from C to B; -1: right.
     #[getter]
     fn t1(&self) -> i64 {
         self.file.linkage.assembly().into()
     }
 
+    /// 1: P lies left of the line from C to D; -1: right.
     #[getter]
     fn t2(&self) -> i64 {
         self.file.linkage.side().into()
     }
 
+    /// crank-rocker, rocker-crank, double-crank, double-rocker, triple-rocker or change-point; None: no linkage.
     #[getter]
     fn r#type(&self) -> Option<&'static str> {
         self.file.linkage.linkage_type().map(|found| found.name())
     }
 
+    /// p + q - s - l, a length.
     #[getter]
     fn grashof_margin(&self) -> f64 {
         self.file.linkage.mobility().grashof_margin
     }
 
+    /// The longest over the shortest of ground, a, b, c.
     #[getter]
     fn link_ratio(&self) -> f64 {
         self.file.linkage.link_ratio()
     }
 
+    /// Type, range of the input, toggles, circuits, branches, transmission angles (degrees).
     #[getter]
     fn mobility<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| values::data(py, &analysis::mobility(&self.file.linkage)))
     }
 
+    /// Computes the position at crank angles (radians from the x axis, any shape).
     fn positions<'py>(&self, py: Python<'py>, phi: &Bound<'py, PyAny>) -> PyResult<Positions> {
         guarded(|| {
             let angles = Input::of(phi, "phi")?;
@@ -238,6 +280,7 @@ impl FourBar {
         })
     }
 
+    /// Computes velocities at crank angles, for a crank speed in rad/s.
     #[pyo3(signature = (phi, omega = 1.0))]
     fn velocities<'py>(&self, py: Python<'py>, phi: &Bound<'py, PyAny>, omega: f64) -> PyResult<Rates> {
         guarded(|| {
@@ -248,6 +291,7 @@ impl FourBar {
         })
     }
 
+    /// Computes accelerations at crank angles, for a crank's speed (rad/s) and acceleration (rad/s^2).
     #[pyo3(signature = (phi, omega = 1.0, alpha = 0.0))]
     fn accelerations<'py>(
         &self,
@@ -267,6 +311,7 @@ impl FourBar {
         })
     }
 
+    /// Computes the transmission angle at crank angles, in [0, 180] degrees; NaN where the loop does not close.
     fn transmission_deg<'py>(
         &self,
         py: Python<'py>,
@@ -288,7 +333,11 @@ impl FourBar {
         })
     }
 
-    #[pyo3(signature = (at = 0.0, samples = DEFAULT_SAMPLES))]
+    /// Samples the coupler curve of the circuit that holds the position at the crank angle `at`; shape (m, 2).
+    #[pyo3(
+        signature = (at = 0.0, samples = DEFAULT_SAMPLES),
+        text_signature = "($self, at=0.0, samples=720)"
+    )]
     fn coupler_curve(&self, py: Python<'_>, at: f64, samples: usize) -> PyResult<Py<PyArrayDyn<f64>>> {
         guarded(|| {
             if !(8..=100_000).contains(&samples) {
@@ -303,11 +352,13 @@ impl FourBar {
         })
     }
 
+    /// Returns the text of its linkage file.
     fn to_toml(&self) -> String {
         let name = linkwright::internals::files::name::legal(&self.file.name, "linkage");
         linkage_file::to_toml(&name, self.file.unit, &self.file.linkage)
     }
 
+    /// Returns the other linkages of the same coupler curve.
     fn cognates(&self) -> PyResult<Vec<FourBar>> {
         guarded(|| {
             let found = self.file.linkage.cognates().into_iter().flatten().map(|cognate| cognate.linkage);

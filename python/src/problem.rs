@@ -21,7 +21,7 @@ enum Origin {
     Text(String),
 }
 
-/// A checked problem.
+/// A checked problem, from :func:`linkwright.path` and its like or from a file.
 #[pyclass(frozen, module = "linkwright._linkwright")]
 pub struct Problem {
     origin: Origin,
@@ -67,7 +67,7 @@ pub fn overrides(set: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<(String, Strin
 
 #[pymethods]
 impl Problem {
-    /// Reads the problem of a file: a problem file, or a bare CSV of points or SVG drawing.
+    /// Reads the problem of a file.
     #[staticmethod]
     fn load(path: PathBuf) -> PyResult<Self> {
         guarded(|| {
@@ -96,22 +96,25 @@ impl Problem {
         })
     }
 
+    /// The name.
     #[getter]
     fn name(&self) -> &str {
         &self.file.name
     }
 
+    /// The source of the problem, in words.
     #[getter]
     fn source(&self) -> Option<&str> {
         self.file.source.as_deref()
     }
 
+    /// The unit of its lengths: mm, cm, m or in.
     #[getter]
     fn unit(&self) -> Option<&'static str> {
         self.file.unit.map(|unit| unit.label())
     }
 
-    /// The points of the target.
+    /// Returns the points of the target.
     fn points(&self) -> Vec<[f64; 2]> {
         self.file.spec.task.path.points.clone()
     }
@@ -122,12 +125,13 @@ impl Problem {
         values::data(py, &self.file.spec)
     }
 
-    /// The known facts about the answer.
+    /// The least sum of squares known, of a problem that states it.
     #[getter]
     fn best_known_sum_sq(&self) -> Option<f64> {
         self.file.expect.as_ref()?.best_known_sum_sq
     }
 
+    /// Warnings about values that are ignored or cannot succeed.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.file.warnings.iter().map(ToString::to_string).collect()

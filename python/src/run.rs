@@ -28,7 +28,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A finished run.
+/// A record with everything that follows from it; :class:`linkwright.Result` is the class to use.
 #[pyclass(frozen, module = "linkwright._linkwright")]
 #[derive(Clone)]
 pub struct Run {
@@ -190,6 +190,7 @@ impl Run {
 
 #[pymethods]
 impl Run {
+    /// The name.
     #[getter]
     fn name(&self) -> &str {
         &self.record.problem.name

@@ -128,7 +128,7 @@ def test_what_is_no_array_of_real_numbers_is_refused_by_name(phi: object) -> Non
 
 def test_a_ragged_list_is_refused_by_name() -> None:
     with pytest.raises(ValueError, match="phi: it cannot be made an array of numbers"):
-        LINKAGE.positions([[1.0], [1.0, 2.0]])  # type: ignore[list-item]
+        LINKAGE.positions([[1.0], [1.0, 2.0]])
 
 
 def test_nan_and_infinities_are_angles_at_which_no_loop_closes() -> None:
