@@ -1,8 +1,15 @@
 //! Inputs of the export, comparison and report commands: a result of a run, one linkage of it, or a linkage without a
 //! run.
 
-use crate::files::linkage_file::LinkageFile;
+use crate::app::job::files;
+use crate::app::job::folder::{FolderError, RECORD, read_record};
+use crate::files::diagnostic::Diagnostic;
+use crate::files::linkage_file;
+use crate::files::linkage_file::{AnyLinkageFile, LinkageFile};
+use crate::mechanism::Linkage;
 use crate::record::{Candidate, Pick, Record};
+use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// An input of the export, comparison and report commands.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,4 +104,135 @@ impl Run {
     pub fn one(&self) -> Result<Chosen<'_>, NoCandidate> {
         self.chosen().into_iter().next().ok_or_else(|| NoCandidate(self.named.clone()))
     }
+}
+
+/// The reason why an input cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum NotRead {
+    /// A linkage file is refused.
+    #[error(transparent)]
+    File(#[from] Box<Diagnostic>),
+    /// The record cannot be read.
+    #[error(transparent)]
+    Record(#[from] FolderError),
+    /// The result does not have the linkage that is named after the colon.
+    #[error("{path}: {why}")]
+    Choice {
+        /// The input as it was typed.
+        path: String,
+        /// The reason.
+        why: String,
+    },
+    /// The result has no candidate.
+    #[error(transparent)]
+    NoCandidate(#[from] NoCandidate),
+}
+
+/// Reads an input: a folder, its record.json, either with `:2` for one candidate (or `:buildable`, `:smallest`,
+/// `:best-transmission`, `:front-2`), or a linkage file.
+///
+/// # Errors
+/// [`NotRead`].
+pub fn read(argument: &Path) -> Result<Given, NotRead> {
+    if is_linkage_file(argument) {
+        return Ok(Given::Linkage(Box::new(linkage_file::load(argument)?)));
+    }
+    Ok(Given::Run(Box::new(read_run(argument)?)))
+}
+
+/// Reads one linkage, a chain or a four-bar: of a result it is the candidate that is named, else the first.
+///
+/// # Errors
+/// [`NotRead`].
+pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, NotRead> {
+    if is_linkage_file(argument) {
+        return Ok(linkage_file::load_any(argument)?);
+    }
+    let run = read_run(argument)?;
+    let chosen = run.one()?;
+    let problem = &run.record.problem;
+    Ok(AnyLinkageFile {
+        // The name that its linkage file has.
+        name: files::linkage_name(&run.record, &chosen.suffix),
+        unit: problem.unit,
+        linkage: Linkage::FourBar(chosen.candidate.linkage),
+    })
+}
+
+/// Returns the file that an input is read from: the record in a folder, whatever candidate is named.
+pub fn file_of(argument: &Path) -> PathBuf {
+    let (named, _) = split(argument);
+    if named.is_dir() { named.join(RECORD) } else { named.to_path_buf() }
+}
+
+/// Splits off the name of a candidate, unless the whole is the path of something.
+fn split(argument: &Path) -> (&Path, Option<&str>) {
+    match argument.to_str().and_then(|text| text.rsplit_once(':')) {
+        Some((folder, name)) if !argument.exists() => (Path::new(folder), Some(name)),
+        _ => (argument, None),
+    }
+}
+
+/// Returns whether an argument is the file of a linkage without a run.
+fn is_linkage_file(argument: &Path) -> bool {
+    argument.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) && !argument.is_dir()
+}
+
+fn read_run(argument: &Path) -> Result<Run, NotRead> {
+    let refused = |why: String| NotRead::Choice { path: argument.display().to_string(), why };
+    let (folder, name) = split(argument);
+    let which = match name {
+        None => Which::All,
+        Some(name) => Which::named(name).ok_or_else(|| refused(choices()))?,
+    };
+    let record = read_record(folder)?;
+    if let Some(why) = missing(&record, which) {
+        return Err(refused(why));
+    }
+    let folder = folder.display().to_string();
+    let named = folder.trim_end_matches("/record.json").trim_end_matches('/').to_owned();
+    Ok(Run { named, record, which })
+}
+
+/// Returns the names that can follow a colon, in words.
+pub fn choices() -> String {
+    let picks = Pick::ALL.map(Pick::name).join(", ");
+    format!(
+        "after the colon stands a candidate's rank, from 1, front-1, front-2, .. for a linkage of the front, or {picks}"
+    )
+}
+
+/// Returns the reason why a record does not have what was chosen; `None` if it does.
+pub fn missing(record: &Record, which: Which) -> Option<String> {
+    let n = record.candidates.len();
+    match which {
+        Which::Rank(rank) if rank > n => Some(format!("there is no candidate {rank}, the result has {n}")),
+        Which::Member(number) => match &record.front {
+            None => Some("the result has no front; linkwright front PROBLEM computes one".to_owned()),
+            Some(front) if number > front.members.len() => {
+                Some(format!("there is no linkage {number} in the front, it has {}", front.members.len()))
+            }
+            Some(_) => None,
+        },
+        Which::Pick(Pick::Buildable) if record.buildable.is_none() => Some(format!(
+            "the result has no buildable candidate besides its {n} (one is offered where the first has warnings)"
+        )),
+        Which::Pick(pick) if record.pick(pick).is_none() => Some(format!(
+            "the result has no {} linkage (it is looked for where a candidate is accepted and solve.advice is on)",
+            pick.words()
+        )),
+        Which::All | Which::Rank(_) | Which::Pick(_) => None,
+    }
+}
+
+/// Lists the TOML files of a folder, not below it, by name.
+///
+/// # Errors
+/// The error of the system.
+pub fn toml_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
+    let mut files = paths.collect::<io::Result<Vec<_>>>()?;
+    files.retain(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")));
+    files.sort();
+    Ok(files)
 }

@@ -3,6 +3,7 @@
 use super::arguments::Synth;
 use super::error::CommandError;
 use super::terminal;
+use crate::app::inputs::toml_files;
 use crate::app::job::folder::FolderError;
 use crate::app::job::run::Job;
 use crate::files::input_text;
@@ -10,8 +11,6 @@ use crate::files::problem_file;
 use crate::files::problem_file::ProblemFile;
 use ariadne::ReportKind;
 use std::collections::BTreeMap;
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 /// The usual folder of results.
@@ -111,18 +110,6 @@ fn problem_files(folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
         return Err(CommandError::NoProblems(shown));
     }
     Ok(problems)
-}
-
-/// Lists the TOML files of a folder, not below it, by name.
-///
-/// # Errors
-/// The error of the system.
-pub fn toml_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
-    let mut files = paths.collect::<io::Result<Vec<_>>>()?;
-    files.retain(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")));
-    files.sort();
-    Ok(files)
 }
 
 /// Returns whether a file can be read as TOML and has no task. An unreadable file is not passed over in silence.

@@ -62,6 +62,7 @@ use crate::files::schema::{reference, schema};
 use arguments::{Arguments, Command};
 use ariadne::ReportKind;
 use clap::{CommandFactory, Parser};
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::io;
 use std::panic::catch_unwind;
@@ -107,8 +108,15 @@ fn refuse_at(diagnostic: Box<Diagnostic>) -> Ended {
 
 /// Runs the command that the process was called with.
 pub fn main() -> ExitCode {
+    ExitCode::from(main_of(std::env::args_os()))
+}
+
+/// Runs the command of these words, the first of which is the program's name, and returns its exit code.
+pub fn main_of(words: impl IntoIterator<Item = OsString>) -> u8 {
     interrupt::outlive_large_files();
-    let run = || arguments().and_then(|arguments| dispatch(arguments.command)).unwrap_or_else(|ended| ended);
+    let words: Vec<OsString> = words.into_iter().collect();
+    let run =
+        || arguments(&words).and_then(|arguments| dispatch(arguments.command)).unwrap_or_else(|ended| ended);
     let ended = match catch_unwind(run) {
         Ok(Ended::Good) if terminal::lost() => Ended::Refused,
         Ok(ended) => ended,
@@ -117,12 +125,12 @@ pub fn main() -> ExitCode {
             Ended::Bug
         }
     };
-    ExitCode::from(ended as u8)
+    ended as u8
 }
 
 /// Returns what was typed. Help that was asked for is printed as an answer.
-fn arguments() -> Result<Arguments, Ended> {
-    Arguments::try_parse().map_err(|e| {
+fn arguments(words: &[OsString]) -> Result<Arguments, Ended> {
+    Arguments::try_parse_from(words).map_err(|e| {
         let printed = e.print();
         if e.use_stderr() {
             return Ended::Refused;

@@ -4,25 +4,21 @@ use super::arguments::Snap as Options;
 use super::inputs::RESULTS;
 use super::output::Output;
 use super::result;
-use super::result::Given;
 use super::{Ended, build, interrupt, refuse, refuse_at, refuse_path, terminal};
 use crate::app::job::files::{Timing, files};
 use crate::app::job::folder::ResultsFolder;
-use crate::files::diagnostic::{Diagnostic, escaped};
+use crate::app::snapping::{NoSubject, Subject, fixed};
+use crate::files::diagnostic::Diagnostic;
 use crate::files::generator::FileKind;
 use crate::files::input_text;
 use crate::files::linkage_file;
 use crate::files::name;
 use crate::judge::practicality::{Build, Practicality};
-use crate::mechanism::Unit;
-use crate::mechanism::{FourBar, xy};
-use crate::record::{Candidate, ProblemRecord, Reason, Record};
+use crate::record::{Reason, Record};
 use crate::report::practicality::practicality_text;
 use crate::report::snap::snap_text;
-use crate::report::text::clean;
-use crate::synthesis::snap::{Fixed, Length, Request, SnapError, Stock, own_curve, record, snap};
+use crate::synthesis::snap::{Request, SnapError, Stock, record, snap};
 use crate::synthesis::{Budget, Context};
-use crate::task::Problem;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -31,21 +27,14 @@ const MAX_PITCHES: u64 = 1 << 20;
 /// The ending of the name of a snapped linkage.
 const SUFFIX: &str = "-snapped";
 
-/// The linkage to snap, with its problem.
-struct Subject {
-    label: String,
-    name: String,
-    source: Option<String>,
-    unit: Option<Unit>,
-    problem: Problem,
-    candidate: Candidate,
-}
-
 /// Runs the command.
 pub fn run(options: &Options) -> Result<Ended, Ended> {
     let begun = Instant::now();
     let stock = stock(options)?;
-    let subject = subject(&options.result)?;
+    let subject = Subject::of(result::read(&options.result)?).map_err(|why| match why {
+        NoSubject::NoCandidate(none) => Ended::from(none),
+        why => refuse(why),
+    })?;
     // Before the work, not after it.
     if let Some(path) = linkage_place(options) {
         output(options).check(&[(path, FileKind::Linkage, "")])?;
@@ -53,7 +42,7 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     let request = Request {
         stock,
         lengths: options.snap.clone(),
-        fixed: fixed(options, &subject.candidate.linkage),
+        fixed: fixed(&subject.candidate.linkage, &options.keep, &options.set),
         wanted: subject.problem.spec().solve.candidates,
     };
     let cancel = interrupt::watch("saving the best so far");
@@ -104,49 +93,6 @@ fn stock(options: &Options) -> Result<Stock, Ended> {
         }
         _ => Err(refuse("give --grid, --lengths or --pitches")),
     }
-}
-
-fn subject(path: &Path) -> Result<Subject, Ended> {
-    match result::read(path)? {
-        Given::Linkage(file) => {
-            let (problem, candidate) = own_curve(&file.linkage).ok_or_else(|| {
-                refuse(format!("{} cannot be assembled, so it has no curve to keep", path.display()))
-            })?;
-            let label = format!("{}, measured on its own coupler curve", clean(&file.name));
-            Ok(Subject { label, name: file.name, source: None, unit: file.unit, problem, candidate })
-        }
-        Given::Run(run) => {
-            let chosen = run.one()?;
-            let (label, candidate) = (escaped(&chosen.label), chosen.candidate.clone());
-            let ProblemRecord { name, source, unit, resolved, .. } = run.record.problem;
-            let problem = Problem::new(resolved).map_err(refuse)?;
-            let points = problem.task().len();
-            if candidate.crank_deg.len() != points || candidate.t1_at.len() != points {
-                return Err(refuse(format!("{label} has no position for each of the target's points")));
-            }
-            Ok(Subject { label, name, source, unit, problem, candidate })
-        }
-    }
-}
-
-fn fixed(options: &Options, linkage: &FourBar) -> Fixed {
-    let mut fixed = Fixed::default();
-    let angle = linkage.ground_angle().to_degrees();
-    for key in &options.keep {
-        match (Length::named(key), key.as_str()) {
-            (Some(length), _) => fixed = fixed.with(length, length.of(linkage)),
-            (None, "A") => fixed.crank_pivot = Some(xy(linkage.crank_pivot())),
-            (None, "B") => fixed.follower_pivot = Some(xy(linkage.follower_pivot())),
-            (None, _) => fixed.ground_angle_deg = Some(angle),
-        }
-    }
-    for (key, value) in &options.set {
-        match Length::named(key) {
-            Some(length) => fixed = fixed.with(length, *value),
-            None => fixed.ground_angle_deg = Some(*value),
-        }
-    }
-    fixed
 }
 
 /// Returns the file for the best linkage alone, if one was named.

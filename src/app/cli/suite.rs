@@ -1,13 +1,12 @@
 //! `suite`: problems whose answer is known, from many seeds.
 
 use super::arguments::Suite as Asked;
-use super::inputs::toml_files;
 use super::output::Output;
 use super::progress::Shown;
 use super::{Ended, interrupt, refuse, refuse_at, refuse_io, terminal};
-use crate::app::suite::{Options, Step, literature, suite};
+use crate::app::suite::choice::{NoProblems, chosen};
+use crate::app::suite::{Options, Step, suite};
 use crate::files::generator::FileKind;
-use crate::files::problem_file;
 use crate::files::problem_file::ProblemFile;
 use crate::record::suite::Suite;
 use crate::report::suite::{suite_markdown, suite_text};
@@ -81,9 +80,6 @@ fn command(asked: &Asked) -> String {
     words.join(" ")
 }
 
-/// Problems with the names of their files.
-type Named = Vec<(String, ProblemFile)>;
-
 /// Returns the folder of the problems: the one that was named, or that of the literature if it is here; `None` if the
 /// program's own are run.
 fn folder(asked: &Asked) -> Option<&Path> {
@@ -91,46 +87,13 @@ fn folder(asked: &Asked) -> Option<&Path> {
     asked.problems.as_deref().or_else(|| here.is_dir().then_some(here))
 }
 
-/// Reads the problems of a folder, by file name.
-fn of_folder(folder: &Path) -> Result<Named, Ended> {
-    let mut files = toml_files(folder).map_err(|e| {
-        let remedy =
-            "name another with --problems, or leave it out for the problems that linkwright has in it";
-        refuse(format!("the folder of problems {} cannot be read: {e}; {remedy}", folder.display()))
-    })?;
-    // By the name without its ending, so that a.toml comes before a-b.toml.
-    files.sort_by(|one, other| one.file_stem().cmp(&other.file_stem()));
-    // Every file is read, so that the faults of all are shown.
-    let read = files.iter().map(|path| {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        Ok((stem.into_owned(), problem_file::load(path, &[]).map_err(refuse_at)?))
-    });
-    read.collect::<Vec<_>>().into_iter().collect()
-}
-
-/// Returns the problems of the literature, which the program holds.
-fn built_in() -> Result<Named, Ended> {
-    let problems = literature::problems().map_err(refuse_at)?.into_iter();
-    Ok(problems.map(|(name, problem)| (name.trim_end_matches(".toml").to_owned(), problem)).collect())
-}
-
 /// Returns the problems that are asked for, by file name.
 fn problems(asked: &Asked) -> Result<Vec<ProblemFile>, Ended> {
-    let folder = folder(asked);
-    let shown = folder.map_or("the literature".into(), |folder| folder.display().to_string());
-    let mut known = folder.map_or_else(built_in, of_folder)?;
-    known.retain(|(_, problem)| problem.expect.as_ref().is_some_and(|e| e.best_known_sum_sq.is_some()));
-    if known.is_empty() {
-        return Err(refuse(format!("no problem in {shown} has an [expect] table with best_known_sum_sq")));
-    }
-    let names: Vec<String> = known.iter().map(|(_, problem)| problem.name.clone()).collect();
-    let filter = asked.filter.as_deref().unwrap_or_default();
-    known.retain(|(stem, problem)| problem.name.contains(filter) || stem.contains(filter));
-    if known.is_empty() {
-        let names = names.join(", ");
-        return Err(refuse(format!("no problem in {shown} has {filter:?} in its name; there are {names}")));
-    }
-    let known: Vec<ProblemFile> = known.into_iter().map(|(_, problem)| problem).collect();
+    let chosen = chosen(folder(asked), asked.filter.as_deref().unwrap_or_default());
+    let known = chosen.map_err(|why| match why {
+        NoProblems::Files(faults) => faults.into_iter().map(refuse_at).next_back().unwrap_or(Ended::Refused),
+        why => refuse(why),
+    })?;
     for warning in known.iter().flat_map(|problem| &problem.warnings) {
         terminal::diagnose(ReportKind::Warning, warning);
     }

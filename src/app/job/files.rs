@@ -5,7 +5,7 @@
 //! candidate of rank N.
 
 use crate::app::inputs::MEMBER;
-use crate::app::job::folder::{FRONT_CSV, FRONT_HTML};
+use crate::app::job::folder::{FRONT_CSV, FRONT_HTML, RECORD};
 use crate::app::job::run::AdviceSeconds;
 use crate::files::linkage_file;
 use crate::files::name;
@@ -66,6 +66,18 @@ const WORTH_SAYING_S: f64 = 1e-3;
 #[error("the record cannot be written as JSON: {0}")]
 pub struct NotJson(#[from] serde_json::Error);
 
+/// Returns the contents of `record.json`.
+///
+/// # Errors
+/// [`NotJson`] if the record cannot be written as data.
+pub fn record_json(record: &Record) -> Result<Vec<u8>, NotJson> {
+    json(record)
+}
+
+fn json(data: &impl serde::Serialize) -> Result<Vec<u8>, NotJson> {
+    Ok((serde_json::to_string_pretty(data)? + "\n").into_bytes())
+}
+
 /// Returns the name and the contents of every file of a result's folder.
 ///
 /// # Errors
@@ -79,10 +91,9 @@ pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>,
 /// # Errors
 /// As [`files`].
 pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<(String, Vec<u8>)>, NotJson> {
-    let json = |text: Result<String, serde_json::Error>| text.map(|text| (text + "\n").into_bytes());
     let mut files = vec![
-        ("record.json".to_string(), json(serde_json::to_string_pretty(record))?),
-        ("timing.json".to_string(), json(serde_json::to_string_pretty(timing))?),
+        (RECORD.to_string(), record_json(record)?),
+        ("timing.json".to_string(), json(timing)?),
         ("candidates.csv".to_string(), csv::candidates_csv(record).into_bytes()),
     ];
     for Listed { file, name, candidate } in listed(record) {

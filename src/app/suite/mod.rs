@@ -5,6 +5,7 @@
 //! after the other on one thread, so that their times can be compared. All figures in a [`Suite`] are computed by the
 //! referee; only the times differ from one machine to another.
 
+pub mod choice;
 pub mod literature;
 pub mod published;
 

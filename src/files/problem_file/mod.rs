@@ -110,6 +110,20 @@ pub fn parse(
     parse_at(file_name, text, &Whereabouts { folder, anywhere, beside: &[] }, overrides)
 }
 
+/// Reads the problem of a text that a program's user wrote, as [`parse`] does; files that it names are looked for from
+/// `folder`, and may be anywhere.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_own(
+    file_name: &str,
+    text: &str,
+    folder: &Path,
+    overrides: &[(String, String)],
+) -> Result<ProblemFile, Box<Diagnostic>> {
+    parse_at(file_name, text, &Whereabouts { folder: Some(folder), anywhere: true, beside: &[] }, overrides)
+}
+
 /// Reads the problem of a text as [`parse`] does, with points files and drawings that are not on the disk: each with the
 /// name under which the problem asks for it.
 ///

@@ -24,6 +24,7 @@
 //! | [`mobility`] | mobility of a four-bar: its type by Grashof, the range of its input, and its circuits, branches and toggles |
 //! | [`motion`] | velocity and acceleration at one crank angle, in natural coordinates |
 //! | [`position`] | position analysis of the four-bar in closed form, in natural coordinates: the kernel that the other modules call |
+//! | [`positions`] | positions at many crank angles, in blocks of lanes |
 //! | [`transmission`] | the transmission angle mu between coupler and follower at D, in [0, 180] degrees, and its extremes |
 
 pub mod assembly_condition;
@@ -34,6 +35,7 @@ pub mod loop_closure;
 pub mod mobility;
 pub mod motion;
 pub mod position;
+pub mod positions;
 pub mod transmission;
 
 pub use coupler_curve::CouplerCurve;

@@ -16,6 +16,7 @@
 
 use crate::mechanism::{AssemblyMode, Complex, FLAT_TOLERANCE, FourBar};
 use crate::numbers::arithmetic::lane::Lane;
+use crate::numbers::arithmetic::sine::sin_cos;
 
 /// Positions of the moving joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -210,7 +211,7 @@ impl FourBar {
 
     /// Computes the position as [`FourBar::position`] does, with the given assembly mode.
     pub fn position_with(&self, crank_angle: f64, assembly: AssemblyMode) -> Position {
-        let (sin, cos) = crank_angle.sin_cos();
+        let (sin, cos) = sin_cos(crank_angle);
         let at = Kernel::new(&self.with_assembly(assembly)).at(cos, sin);
         if at.gap >= 0.0 && at.coupler_point.iter().all(|x| x.is_finite()) {
             let as_point = |p: [f64; 2]| Complex::new(p[0], p[1]);

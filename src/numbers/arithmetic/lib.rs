@@ -9,6 +9,7 @@
 //! | [`lane`] | SIMD lanes: the arithmetic of the position solver, written once for one `f64` and for eight of them side by side |
 //! | [`mod@once`] | values that are made once, in parallel, and used by all threads |
 //! | [`mod@operators`] | operators of number types, written as functions of their operands |
+//! | [`sine`] | sine and cosine together, for one angle and for a block of them, with the same digits |
 //! | [`streams`] | streams of pseudo-random numbers, each determined by a seed and an index, and the draws made from them |
 
 pub mod complex_lanes;
@@ -17,6 +18,7 @@ pub mod double_double;
 pub mod lane;
 pub mod once;
 mod operators;
+pub mod sine;
 pub mod streams;
 
 /// A point or a vector of the plane, x + i y.

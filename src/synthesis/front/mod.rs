@@ -30,7 +30,7 @@ use crate::judge::assess::assess;
 use crate::judge::figures::figures;
 use crate::judge::rank::chosen;
 use crate::judge::trade_off::{knees, members, undominated};
-use crate::record::{Axis, Candidate, Evaluations, Figures, Front, Member, Reason};
+use crate::record::{Axis, Candidate, Evaluations, Figures, Front, LEAST_AXES, MOST_AXES, Member, Reason};
 use crate::task::Problem;
 use crate::task::spec::Objective;
 use archive::Archive;
@@ -48,6 +48,47 @@ pub struct FrontRequest {
     pub axes: Vec<Axis>,
     /// The number of members.
     pub points: usize,
+}
+
+/// The reason why the axes of a front are refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AxesError {
+    /// There are too few axes, or too many.
+    #[error("--axes {0}: name {LEAST_AXES} to {MOST_AXES} axes, such as rms,transmission,extent")]
+    Count(String),
+    /// An axis is named twice.
+    #[error("--axes {names}: {twice} is named twice; name each axis once")]
+    Twice {
+        /// The axes as they were named.
+        names: String,
+        /// The axis that is named twice.
+        twice: &'static str,
+    },
+    /// No axis is an error.
+    #[error("--axes {0}: add rms or max; without an error any small linkage is the best")]
+    NoError(String),
+}
+
+impl FrontRequest {
+    /// Checks the number of axes, that none is named twice, and that an error is among them.
+    ///
+    /// # Errors
+    /// [`AxesError`].
+    pub fn check(&self) -> Result<(), AxesError> {
+        let axes = &self.axes;
+        let names: Vec<&str> = axes.iter().map(|axis| axis.name()).collect();
+        let names = names.join(",");
+        if !(LEAST_AXES..=MOST_AXES).contains(&axes.len()) {
+            return Err(AxesError::Count(names));
+        }
+        if let Some(twice) = (1..axes.len()).find(|&i| axes[..i].contains(&axes[i])) {
+            return Err(AxesError::Twice { names, twice: axes[twice].name() });
+        }
+        if !axes.contains(&Axis::Rms) && !axes.contains(&Axis::Max) {
+            return Err(AxesError::NoError(names));
+        }
+        Ok(())
+    }
 }
 
 impl Default for FrontRequest {

@@ -1,0 +1,205 @@
+"""Problems from points, poses or functions."""
+
+from __future__ import annotations
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+    from typing import Any
+
+from ._linkwright import Problem
+
+
+def load_problem(path: str | os.PathLike[str]) -> Problem:
+    """Reads the problem of a file.
+
+    Args:
+        path: a problem file (TOML), or a bare target: points (CSV) or a drawing (SVG).
+
+    Raises:
+        ProblemError: the file is refused; the text names the line, the fault and the remedy.
+    """
+    return Problem.load(path)
+
+
+def _problem(kind: str, task: Mapping[str, Any], tables: Mapping[str, Any]) -> Problem:
+    return Problem.of({"format": 1, "task": {kind: task}, **tables})
+
+
+def path(
+    points: Any,
+    *,
+    closed: bool | None = None,
+    tolerance: Any = None,
+    weight: Any = None,
+    crank_deg: Any = None,
+    offset: str | None = None,
+    samples: int | None = None,
+    smooth: float | None = None,
+    design: Mapping[str, Any] | None = None,
+    require: Mapping[str, Any] | None = None,
+    solve: Mapping[str, Any] | None = None,
+    certify: Mapping[str, Any] | None = None,
+    name: str | None = None,
+    source: str | None = None,
+    unit: str | None = None,
+) -> Problem:
+    """Makes a problem of a path to trace.
+
+    Args:
+        points: the target points in their order, shape (n, 2), or the path of a points file (CSV) or a drawing (SVG).
+        closed: whether the target is a closed curve.
+        tolerance: the largest error accepted, a length: one for all points, or shape (n,).
+        weight: the weights of the squared errors, shape (n,).
+        crank_deg: prescribed crank angles in degrees, counter-clockwise positive, shape (n,). Without them the timing is
+            free.
+        offset: the reference of `crank_deg`: ``"free"`` (only increments count), ``"fixed"`` (from the x axis) or
+            ``"ground"`` (from the line A -> B).
+        samples: the number of points taken evenly along the path.
+        smooth: smooths digitised points; the standard deviation of the window, a length.
+        design, require, solve, certify: the tables of a problem file with these names, as dicts.
+        name, source, unit: the keys of a problem file; `unit` is ``"mm"``, ``"cm"``, ``"m"`` or ``"in"``.
+
+    Raises:
+        ProblemError: a value is refused; the text names the key, the fault and the remedy.
+        TypeError: a value is of a type that no problem file can hold.
+
+    >>> import linkwright as lw
+    >>> problem = lw.path([[0, 0], [1, 1], [2, 1.5], [3, 1]], tolerance=0.1, name="arc")
+    >>> problem.name, problem.resolved["solve"]["candidates"]
+    ('arc', 5)
+    >>> lw.path([[0, 0], [1, 1]], require={"transmission_deg_min": 100})  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    linkwright.ProblemError: problem:...: ...
+    """
+    task: dict[str, Any] = {
+        "closed": closed, "tolerance": tolerance, "weight": weight, "samples": samples, "smooth": smooth,
+    }  # fmt: skip
+    place = getattr(points, "__fspath__", None)
+    if place is not None:
+        points = place()
+    if isinstance(points, str):
+        task["svg" if points.lower().endswith(".svg") else "file"] = points
+    else:
+        task["points"] = points
+    if crank_deg is not None or offset is not None:
+        task["timing"] = {"crank_deg": crank_deg, "offset": offset}
+    return _problem("path", task, _tables(design, require, solve, certify, name, source, unit))
+
+
+def motion(
+    poses: Any,
+    *,
+    angle_weight: float | None = None,
+    tolerance: Any = None,
+    tolerance_deg: Any = None,
+    exact: Any = None,
+    closed: bool | None = None,
+    crank_deg: Any = None,
+    offset: str | None = None,
+    design: Mapping[str, Any] | None = None,
+    require: Mapping[str, Any] | None = None,
+    solve: Mapping[str, Any] | None = None,
+    name: str | None = None,
+    source: str | None = None,
+    unit: str | None = None,
+) -> Problem:
+    """Makes a problem of poses to pass.
+
+    Args:
+        poses: x, y and the angle of the body in degrees, shape (n, 3); a list may hold ``[x, y]`` where only the point is
+            asked for. Or the path of a CSV file.
+        angle_weight: a length: an angle error of 1 rad counts like this length.
+        tolerance, tolerance_deg: the largest errors of position and angle accepted.
+        exact: the indices (from 0) of poses that must be met exactly.
+        closed, crank_deg, offset, design, require, solve, name, source, unit: as for :func:`path`.
+
+    Raises:
+        ProblemError: a value is refused, or this version of linkwright has no such task.
+    """
+    task: dict[str, Any] = {
+        "angle_weight": angle_weight, "tolerance": tolerance, "tolerance_deg": tolerance_deg,
+        "exact": exact, "closed": closed,
+    }  # fmt: skip
+    place = getattr(poses, "__fspath__", None)
+    task["file" if place is not None or isinstance(poses, str) else "poses"] = poses
+    if crank_deg is not None or offset is not None:
+        task["timing"] = {"crank_deg": crank_deg, "offset": offset}
+    return _problem("motion", task, _tables(design, require, solve, None, name, source, unit))
+
+
+def function(
+    input_deg: Any = None,
+    output_deg: Any = None,
+    *,
+    output: Any = None,
+    of: str | None = None,
+    over: Any = None,
+    input_range_deg: Any = None,
+    output_range_deg: Any = None,
+    samples: int | None = None,
+    file: str | os.PathLike[str] | None = None,
+    input_offset: str | None = None,
+    output_offset: str | None = None,
+    sense: str | None = None,
+    tolerance: Any = None,
+    tolerance_deg: Any = None,
+    weight: Any = None,
+    design: Mapping[str, Any] | None = None,
+    require: Mapping[str, Any] | None = None,
+    solve: Mapping[str, Any] | None = None,
+    name: str | None = None,
+    source: str | None = None,
+    unit: str | None = None,
+) -> Problem:
+    """Makes a problem of a function to generate: the output link's angle for the crank's.
+
+    Args:
+        input_deg: how far the crank has turned, degrees, shape (n,).
+        output_deg: how far the output has turned, degrees, shape (n,); or `output`: a slider's places, lengths.
+        of, over, input_range_deg, output_range_deg, samples: a formula such as ``"log10(x)"`` in place of a table.
+        file: a CSV file in place of a table.
+        input_offset, output_offset: ``"free"`` or ``"ground"``.
+        sense: ``"same"``, ``"opposite"`` or ``"any"``.
+        tolerance, tolerance_deg, weight: the largest errors accepted, and weights.
+        design, require, solve, name, source, unit: as for :func:`path`.
+
+    Raises:
+        ProblemError: a value is refused, or this version of linkwright has no such task.
+    """
+    task = {
+        "input_deg": input_deg, "output_deg": output_deg, "output": output, "of": of, "over": over,
+        "input_range_deg": input_range_deg, "output_range_deg": output_range_deg, "samples": samples,
+        "file": file, "input_offset": input_offset, "output_offset": output_offset, "sense": sense,
+        "tolerance": tolerance, "tolerance_deg": tolerance_deg, "weight": weight,
+    }  # fmt: skip
+    return _problem("function", task, _tables(design, require, solve, None, name, source, unit))
+
+
+def _tables(
+    design: Mapping[str, Any] | None,
+    require: Mapping[str, Any] | None,
+    solve: Mapping[str, Any] | None,
+    certify: Mapping[str, Any] | None,
+    name: str | None,
+    source: str | None,
+    unit: str | None,
+) -> dict[str, Any]:
+    return {
+        "name": name, "source": source, "unit": unit,
+        "design": design, "require": require, "solve": solve, "certify": certify,
+    }  # fmt: skip
+
+
+def as_problem(given: Any) -> Problem:
+    """Returns the problem of an argument: a Problem, a dict with the keys of a problem file, or a path."""
+    if isinstance(given, Problem):
+        return given
+    if hasattr(given, "keys"):
+        return Problem.of(given if "format" in given else {"format": 1, **given})
+    if isinstance(given, str) or hasattr(given, "__fspath__"):
+        return Problem.load(given)
+    kind = type(given).__name__
+    raise TypeError(f"a problem, a dict with the keys of a problem file, or a path is needed, not {kind}")

@@ -1,0 +1,76 @@
+//! The figures of what it takes to build a linkage, as data.
+
+use linkwright::internals::app::inputs::Given;
+use linkwright::internals::judge::practicality::clearance::Build;
+use linkwright::internals::judge::practicality::sensitivity::Dimension;
+use linkwright::internals::judge::practicality::{Closest, Practicality, usual_tolerance};
+use linkwright::internals::report::Colour;
+use linkwright::internals::report::practicality::practicality_text;
+use linkwright::{FourBar, Problem, Unit};
+use serde_json::{Value, json};
+
+/// Examines a linkage; sizes that are not given are the usual ones.
+///
+/// # Errors
+/// The reason why there is nothing to build.
+pub fn built(
+    given: Given,
+    hole: Option<f64>,
+    margin: Option<f64>,
+    tolerance: Option<f64>,
+) -> Result<(Value, String), String> {
+    let made = |linkage: &FourBar, unit: Option<Unit>| {
+        let hole = hole.unwrap_or_else(|| Build::usual_hole(linkage, unit));
+        Build::new(hole, margin.unwrap_or(hole))
+    };
+    let (title, linkage, unit, found) = match given {
+        Given::Linkage(file) => {
+            let found = Practicality::of_linkage(&file.linkage, made(&file.linkage, file.unit));
+            (file.name.clone(), file.linkage, file.unit, found)
+        }
+        Given::Run(run) => {
+            let chosen = run.one().map_err(|e| e.to_string())?;
+            let problem = Problem::new(run.record.problem.resolved.clone()).map_err(|e| e.to_string())?;
+            let (linkage, unit) = (chosen.candidate.linkage, run.record.problem.unit);
+            let found = Practicality::of_candidate(&problem, chosen.candidate, made(&linkage, unit));
+            (chosen.label.clone(), linkage, unit, found)
+        }
+    };
+    let found = found.ok_or_else(|| format!("{title} cannot be assembled, so there is nothing to build"))?;
+    let tolerance = tolerance.unwrap_or_else(|| usual_tolerance(&linkage, unit));
+    let text = practicality_text(&found, unit, tolerance, Colour::Never);
+    Ok((figures(&found, tolerance), text))
+}
+
+fn figures(found: &Practicality, tolerance: f64) -> Value {
+    let closest = |closest: &Closest| {
+        json!({ "value": closest.value, "crank_deg": closest.crank_angle.to_degrees(),
+                "t1": i64::from(closest.assembly) })
+    };
+    let distances = found.distances.as_ref().map(|all| {
+        all.iter()
+            .map(
+                |one| json!({ "between": one.between, "fixed": one.fixed, "closest": closest(&one.closest) }),
+            )
+            .collect::<Vec<_>>()
+    });
+    let layers = found.layering.as_ref().and_then(|layering| layering.stack.as_ref()).map(|stack| {
+        stack
+            .layers
+            .iter()
+            .map(|layer| layer.iter().map(|link| link.name()).collect::<Vec<_>>())
+            .collect::<Vec<_>>()
+    });
+    let dimension = |one: &Dimension| json!({ "name": one.name, "rms": one.rms, "worst": one.worst, "worst_at": one.worst_at });
+    let sensitivity = found.sensitivity.as_ref().map(|felt| {
+        json!({
+            "dimensions": felt.dimensions.iter().map(dimension).collect::<Vec<_>>(),
+            "ground": dimension(&felt.ground),
+            "band": felt.band, "worst": felt.worst, "worst_at": felt.worst_at, "at_toggles": felt.at_toggles,
+        })
+    });
+    json!({
+        "hole": 2.0 * found.build.pin_radius, "margin": found.build.plate_radius - found.build.pin_radius,
+        "tolerance": tolerance, "layers": layers, "distances": distances, "sensitivity": sensitivity,
+    })
+}

@@ -1,0 +1,499 @@
+//! Everything else that the command line does: verify, certify, compare, analyze, cognates, build, snap, export, suite.
+
+use crate::chain::Chain;
+use crate::errors::{guarded, refused};
+use crate::linkage::FourBar;
+use crate::problem::Problem;
+use crate::run::{Run, told_of_proof};
+use crate::waiting::{Ended, carrying, run, run_whole};
+use crate::{pools, values};
+use linkwright::internals::app::comparison::{self, NotCompared, Target};
+use linkwright::internals::app::inputs::{self, Given};
+use linkwright::internals::app::snapping::{Subject as Snapping, fixed};
+use linkwright::internals::app::suite::choice::chosen;
+use linkwright::internals::app::suite::{Options as SuiteOptions, Step, suite as run_suite};
+use linkwright::internals::files::linkage_file::{self, AnyLinkageFile, LinkageFile};
+use linkwright::internals::files::name;
+use linkwright::internals::files::schema::{SchemaKind, schema as schema_of};
+use linkwright::internals::judge::certificate::{Proof, Request as ProofRequest};
+use linkwright::internals::judge::verify::{Checked, unchecked, verify as verify_record, verify_certificate};
+use linkwright::internals::mechanism::Linkage;
+use linkwright::internals::mechanism::analysis::chain::{ChainRequest, analyze_chain};
+use linkwright::internals::mechanism::analysis::{
+    PositionMethod, Request as Analysis, analyze as analyze_four_bar, full_turn,
+};
+use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
+use linkwright::internals::report::Colour;
+use linkwright::internals::report::analysis_csv::analysis_csv;
+use linkwright::internals::report::analysis_sheets::analysis_svg;
+use linkwright::internals::report::analysis_text::analysis_table;
+use linkwright::internals::report::chain_sheet::chain_svg;
+use linkwright::internals::report::chain_text::{chain_csv, chain_table};
+use linkwright::internals::report::compare::SortKey;
+use linkwright::internals::report::snap::snap_text;
+use linkwright::internals::report::suite::{suite_markdown, suite_text};
+use linkwright::internals::synthesis::snap::{
+    Length, Request as SnapRequest, Stock, record as snap_record, snap as snapped,
+};
+use linkwright::internals::synthesis::{Budget, Context};
+use linkwright::internals::task::spec::{CertifySpec, MAX_CERTIFY_S};
+use linkwright::{ExportFormat, ExportSettings, ExportSubject, export as write_export};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Returns what an argument names: a path, a linkage, or a run with the choice of its linkages.
+pub fn given(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<Given> {
+    if let Ok(run) = subject.cast::<Run>() {
+        return run.get().given(which);
+    }
+    if let Ok(linkage) = subject.cast::<FourBar>() {
+        return Ok(Given::Linkage(Box::new(linkage.get().file.clone())));
+    }
+    if subject.is_instance_of::<Chain>() {
+        return Err(refused("a chain is not a four-bar, and a four-bar is needed here"));
+    }
+    let path: PathBuf = subject.extract().map_err(|_| unfit(subject))?;
+    inputs::read(&path).map_err(refused)
+}
+
+/// Returns the linkage, of any kind, that an argument names.
+fn any_linkage(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<AnyLinkageFile> {
+    if let Ok(chain) = subject.cast::<Chain>() {
+        let Chain { name, unit, chain, .. } = chain.get();
+        let linkage = Linkage::Chain(Box::new(chain.clone()));
+        return Ok(LinkageFile { name: name.clone(), unit: *unit, linkage });
+    }
+    if let Ok(run) = subject.cast::<Run>() {
+        let FourBar { file } = run.get().linkage(which.unwrap_or("1"))?;
+        return Ok(LinkageFile { name: file.name, unit: file.unit, linkage: Linkage::FourBar(file.linkage) });
+    }
+    if let Ok(linkage) = subject.cast::<FourBar>() {
+        let LinkageFile { name, unit, linkage } = linkage.get().file.clone();
+        return Ok(LinkageFile { name, unit, linkage: Linkage::FourBar(linkage) });
+    }
+    let path: PathBuf = subject.extract().map_err(|_| unfit(subject))?;
+    inputs::read_linkage(&path).map_err(refused)
+}
+
+fn unfit(subject: &Bound<'_, PyAny>) -> PyErr {
+    let kind = subject.get_type().name().map_or_else(|_| "that".into(), |name| name.to_string());
+    PyTypeError::new_err(format!("a result, a candidate, a linkage or a path is needed, not {kind}"))
+}
+
+/// Reads the linkage of a file: a four-bar or a chain.
+///
+/// Raises ProblemError: the file is refused; the text names the line, the fault and the remedy.
+#[pyfunction]
+pub fn load<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyAny>> {
+    guarded(|| {
+        let file = linkage_file::load_any(&path).map_err(refused)?;
+        let text = std::fs::read_to_string(&path).map_err(refused)?;
+        of_file(py, file, text)
+    })
+}
+
+/// Reads the linkage of a text in the format of a linkage file.
+#[pyfunction]
+pub fn parse_linkage<'py>(py: Python<'py>, text: String) -> PyResult<Bound<'py, PyAny>> {
+    guarded(|| of_file(py, linkage_file::parse_any("linkage", &text).map_err(refused)?, text))
+}
+
+fn of_file<'py>(py: Python<'py>, file: AnyLinkageFile, text: String) -> PyResult<Bound<'py, PyAny>> {
+    let LinkageFile { name, unit, linkage } = file;
+    Ok(match linkage {
+        Linkage::FourBar(linkage) => {
+            Bound::new(py, FourBar { file: LinkageFile { name, unit, linkage } })?.into_any()
+        }
+        Linkage::Chain(chain) => Bound::new(py, Chain { name, unit, chain: *chain, text })?.into_any(),
+    })
+}
+
+/// Recomputes a record: what differs, in words, and the keys that are not recomputed.
+#[pyfunction]
+#[pyo3(signature = (result, certificate = false))]
+pub fn verify<'py>(
+    py: Python<'py>,
+    result: &Bound<'py, Run>,
+    certificate: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    guarded(|| {
+        let record = result.get().record.clone();
+        if certificate && record.certificate.is_none() {
+            return Err(refused("the record has no certificate; run certify first"));
+        }
+        let found = run_whole(py, move |talk| {
+            let mut found =
+                verify_record(&record).map_err(|e| format!("the recorded problem is none: {e}"))?;
+            if certificate {
+                let again = verify_certificate(&record, &talk.cancel, &mut |_| {});
+                found.extend(again.map_err(|e| e.to_string())?.unwrap_or_default());
+            }
+            let told: Vec<_> = found
+                .iter()
+                .map(|m| {
+                    json!({ "rank": m.rank, "what": m.what, "recorded": m.recorded, "found": m.found,
+                            "text": m.to_string() })
+                })
+                .collect();
+            let (limits, not) = (unchecked(&record, Checked::Bounded), unchecked(&record, Checked::Not));
+            Ok::<_, String>(json!({ "mismatches": told, "held_to_limits": limits, "not_checked": not }))
+        })?;
+        values::to_python(py, &found.map_err(refused)?)
+    })
+}
+
+/// Proves a lower bound of the error; the run with its certificate.
+#[pyfunction]
+#[pyo3(signature = (result, gap = None, time_limit_s = None, threads = None, progress = None))]
+pub fn certify<'py>(
+    py: Python<'py>,
+    result: &Bound<'py, Run>,
+    gap: Option<f64>,
+    time_limit_s: Option<f64>,
+    threads: Option<i64>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Run> {
+    guarded(|| {
+        let usual = CertifySpec::default();
+        let (gap, seconds) = (gap.unwrap_or(usual.gap), time_limit_s.unwrap_or(usual.time_limit_s));
+        if !(gap > 0.0 && gap < 1.0) {
+            return Err(refused(format!(
+                "gap = {gap}: a gap is between 0 and 1, such as 1e-4 for a hundredth of a per cent"
+            )));
+        }
+        if !(seconds > 0.0 && seconds <= MAX_CERTIFY_S) {
+            return Err(refused(format!(
+                "time_limit_s = {seconds}: above 0, at most {MAX_CERTIFY_S:e} seconds"
+            )));
+        }
+        let of = result.get().clone();
+        let Ended { value, interrupt } = run(py, pools::threads(threads)?, progress, move |talk| {
+            let deadline = Instant::now() + Duration::from_secs_f64(seconds);
+            let mut proof = Proof::new(&of.record, &ProofRequest { gap }).map_err(|e| e.to_string())?;
+            proof.run(&talk.cancel, Some(deadline), &mut |progress| talk.tell(|| told_of_proof(progress)));
+            let leaves = proof.leaves();
+            let mut record = (*of.record).clone();
+            record.certificate = Some(proof.certificate_of(&leaves));
+            record.no_certificate = None;
+            let leaves = Some(leaves.to_bytes().into());
+            Ok::<_, String>(Run { record: record.into(), leaves, ..of })
+        })?;
+        let found = value.map_err(refused)?;
+        match interrupt {
+            None => Ok(found),
+            Some(interrupt) => Err(carrying(py, interrupt, Bound::new(py, found)?.into_any())),
+        }
+    })
+}
+
+/// Puts results and linkages side by side: JSON, table, CSV, SVG and page.
+#[pyfunction]
+#[pyo3(signature = (subjects, target = None, sort = Vec::new(), reference = None))]
+pub fn compare<'py>(
+    py: Python<'py>,
+    subjects: Vec<(Bound<'py, PyAny>, Option<String>, String)>,
+    target: Option<&Bound<'py, Problem>>,
+    sort: Vec<String>,
+    reference: Option<usize>,
+) -> PyResult<[String; 5]> {
+    guarded(|| {
+        let read = subjects
+            .iter()
+            .map(|(subject, which, label)| Ok((PathBuf::from(label), given(subject, which.as_deref())?)));
+        let given = read.collect::<PyResult<Vec<(PathBuf, Given)>>>()?;
+        let target =
+            target.map(|problem| Target::new(problem.get().file().clone())).transpose().map_err(refused)?;
+        let keys =
+            sort.iter().map(|key| key.parse()).collect::<Result<Vec<SortKey>, _>>().map_err(refused)?;
+        if reference.is_some_and(|i| i >= given.len()) {
+            return Err(refused("the reference is none of the inputs"));
+        }
+        let compared = run_whole(py, move |_| {
+            let given: Vec<(&Path, Given)> =
+                given.iter().map(|(path, one)| (path.as_path(), one.clone())).collect();
+            let reference = reference.map(|i| match &given[i].1 {
+                Given::Run(run) => run.one().map(|chosen| chosen.label).map_err(|e| e.to_string()),
+                Given::Linkage(_) => Ok(comparison::label_of_file(&given, i)),
+            });
+            let reference = reference.transpose()?;
+            let found = comparison::compared(&given, target.as_ref(), &keys, reference.as_deref());
+            let found = found.map_err(|why| match why {
+                NotCompared::Nothing(left_out) => {
+                    let mut lines: Vec<String> =
+                        left_out.iter().map(|out| format!("{}: {}", out.label, out.why)).collect();
+                    lines.push("none of these results has a candidate to compare".to_owned());
+                    lines.join("\n")
+                }
+                why => why.to_string(),
+            })?;
+            Ok::<_, String>([
+                found.json(),
+                found.table(Colour::Never),
+                found.csv(),
+                found.svg(),
+                found.html(),
+            ])
+        })?;
+        compared.map_err(refused)
+    })
+}
+
+/// Analyses a linkage: JSON, table, CSV and sheets as SVG.
+#[pyfunction]
+#[pyo3(signature = (subject, which, crank_deg, cycle, omega, alpha, methods, all_configurations))]
+#[expect(clippy::too_many_arguments, reason = "the options of the command")]
+pub fn analyze<'py>(
+    py: Python<'py>,
+    subject: &Bound<'py, PyAny>,
+    which: Option<&str>,
+    crank_deg: Option<Vec<f64>>,
+    cycle: usize,
+    omega: f64,
+    alpha: f64,
+    methods: Vec<String>,
+    all_configurations: bool,
+) -> PyResult<[String; 4]> {
+    guarded(|| {
+        let LinkageFile { name, unit, linkage } = any_linkage(subject, which)?;
+        if !(1..=100_000).contains(&cycle) {
+            return Err(refused(format!("cycle = {cycle}: 1 to 100000 are possible")));
+        }
+        let crank_deg = crank_deg.unwrap_or_else(|| full_turn(cycle));
+        let input = CrankMotion { speed_rad_s: omega, acceleration_rad_s2: alpha };
+        let methods: Result<Vec<PositionMethod>, _> = methods.iter().map(|m| m.parse()).collect();
+        let methods = methods.map_err(refused)?;
+        match linkage {
+            Linkage::FourBar(linkage) => {
+                let request = Analysis { name, unit, linkage, crank_deg, input, methods, all_configurations };
+                run_whole(py, move |_| {
+                    let found = analyze_four_bar(&request);
+                    let json = serde_json::to_string(&found).map_err(|e| e.to_string())?;
+                    Ok::<_, String>([
+                        json,
+                        analysis_table(&found, Colour::Never),
+                        analysis_csv(&found),
+                        analysis_svg(&found),
+                    ])
+                })?
+                .map_err(refused)
+            }
+            Linkage::Chain(_) if all_configurations || !methods.is_empty() => Err(refused(
+                "all_configurations and method are for four-bars; this is a chain, whose signs stand in its file",
+            )),
+            Linkage::Chain(chain) => {
+                let request = ChainRequest { name, unit, chain: *chain, crank_deg, input };
+                run_whole(py, move |_| {
+                    let found = analyze_chain(&request);
+                    let json = serde_json::to_string(&found).map_err(|e| e.to_string())?;
+                    let svg = chain_svg(&found, &request.chain);
+                    Ok::<_, String>([json, chain_table(&found, Colour::Never), chain_csv(&found), svg])
+                })?
+                .map_err(refused)
+            }
+        }
+    })
+}
+
+/// Returns what it takes to build a linkage: figures and text.
+#[pyfunction]
+#[pyo3(signature = (subject, which = None, hole = None, margin = None, tolerance = None))]
+pub fn build<'py>(
+    py: Python<'py>,
+    subject: &Bound<'py, PyAny>,
+    which: Option<&str>,
+    hole: Option<f64>,
+    margin: Option<f64>,
+    tolerance: Option<f64>,
+) -> PyResult<(Bound<'py, PyAny>, String)> {
+    guarded(|| {
+        for (key, size) in [("hole", hole), ("margin", margin), ("tolerance", tolerance)] {
+            if let Some(size) = size.filter(|size| !(*size > 0.0 && size.is_finite())) {
+                return Err(refused(format!("{key} = {size}: a number above 0 is needed")));
+            }
+        }
+        let given = given(subject, which)?;
+        let found = run_whole(py, move |_| crate::building::built(given, hole, margin, tolerance))?;
+        let (figures, text) = found.map_err(refused)?;
+        Ok((values::to_python(py, &figures)?, text))
+    })
+}
+
+/// Brings lengths to stock sizes; the run of the snapped linkages, and the text.
+#[pyfunction]
+#[pyo3(signature = (subject, which, grid, lengths, snap, keep, set, threads = None))]
+#[expect(clippy::too_many_arguments, reason = "the options of the command")]
+pub fn snap<'py>(
+    py: Python<'py>,
+    subject: &Bound<'py, PyAny>,
+    which: Option<&str>,
+    grid: Option<f64>,
+    lengths: Option<Vec<f64>>,
+    snap: Option<Vec<String>>,
+    keep: Vec<String>,
+    set: Vec<(String, f64)>,
+    threads: Option<i64>,
+) -> PyResult<(Run, String)> {
+    guarded(|| {
+        let stock = match (grid, &lengths) {
+            (Some(step), None) => Stock::grid(step).map_err(refused)?,
+            (None, Some(lengths)) => Stock::list(lengths).map_err(refused)?,
+            _ => return Err(refused("give grid or lengths: the stock")),
+        };
+        let named = |key: &String| {
+            Length::named(key)
+                .ok_or_else(|| refused(format!("{key}: a hole distance is one of ground, a, b, c, d, e")))
+        };
+        let lengths = match snap {
+            Some(snap) => snap.iter().map(named).collect::<PyResult<Vec<_>>>()?,
+            None => Length::ALL.to_vec(),
+        };
+        let others = ["A", "B", "ground_angle_deg"];
+        if let Some(key) =
+            keep.iter().find(|key| Length::named(key).is_none() && !others.contains(&key.as_str()))
+        {
+            return Err(refused(format!(
+                "{key}: what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg"
+            )));
+        }
+        for (key, value) in &set {
+            let length = Length::named(key).is_some();
+            if !length && key != others[2] {
+                return Err(refused(format!(
+                    "{key}: what can be set is one of ground, a, b, c, d, e, ground_angle_deg"
+                )));
+            }
+            if !value.is_finite() || (length && *value <= 0.0) {
+                return Err(refused(format!("{key} = {value}: a number above 0 is needed")));
+            }
+        }
+        let subject = Snapping::of(given(subject, which)?).map_err(refused)?;
+        let fixed = fixed(&subject.candidate.linkage, &keep, &set);
+        let wanted = subject.problem.spec().solve.candidates;
+        let request = SnapRequest { stock, lengths, fixed, wanted };
+        let Ended { value, interrupt } = run(py, pools::threads(threads)?, None, move |talk| {
+            let budget = Budget::new(&talk.cancel, None);
+            let found = snapped(Context::new(&subject.problem, &budget), &subject.candidate, &request)
+                .map_err(|e| e.to_string())?;
+            let named = name::with_suffix(&name::legal(&subject.name, "linkage"), "-snapped");
+            let Snapping { source, unit, .. } = subject;
+            let record = snap_record(&subject.problem, &named, source, unit, &request, &found)
+                .map_err(|e| e.to_string())?;
+            let text = snap_text(&subject.candidate, &request, &found, unit, Colour::Never);
+            Ok::<_, String>((record, text))
+        })?;
+        match (value, interrupt) {
+            (Err(_), Some(interrupt)) => Err(interrupt),
+            (Err(why), None) => Err(refused(why)),
+            (Ok((record, _)), Some(interrupt)) => {
+                Err(carrying(py, interrupt, Bound::new(py, Run::of(record))?.into_any()))
+            }
+            (Ok((record, text)), None) => Ok((Run::of(record), text)),
+        }
+    })
+}
+
+/// Writes a linkage in a format: the bytes, and the assumptions that were made.
+#[pyfunction]
+pub fn export<'py>(
+    py: Python<'py>,
+    subject: &Bound<'py, PyAny>,
+    which: Option<&str>,
+    format: &str,
+    settings: Vec<(String, String)>,
+) -> PyResult<(Bound<'py, PyBytes>, Vec<String>)> {
+    guarded(|| {
+        let format: ExportFormat = format.parse().map_err(refused)?;
+        let helped = |refusal: linkwright::ExportRefusal| {
+            let place = refusal.setting.map_or(String::new(), |(key, value)| format!("{key}={value}: "));
+            refused(format!("{place}{}\nhelp: {}", refusal.message, refusal.help))
+        };
+        let settings = ExportSettings::parse(format, &settings).map_err(helped)?;
+        let subject = match given(subject, which)? {
+            Given::Linkage(file) => ExportSubject::of_linkage(&file),
+            Given::Run(run) => {
+                ExportSubject::of_candidate(&run.record, run.one().map_err(refused)?.candidate)
+            }
+        };
+        let made = run_whole(py, move |_| write_export(&subject, format, &settings))?.map_err(helped)?;
+        Ok((PyBytes::new(py, &made.bytes), made.notes))
+    })
+}
+
+/// The names of the export formats.
+#[pyfunction]
+pub fn export_formats() -> Vec<&'static str> {
+    ExportFormat::ALL.iter().map(|format| format.name()).collect()
+}
+
+/// Runs the suite: JSON, text and Markdown.
+#[pyfunction]
+#[pyo3(signature = (filter, seeds, problems = None, certify = false, progress = None))]
+pub fn suite<'py>(
+    py: Python<'py>,
+    filter: String,
+    seeds: u64,
+    problems: Option<PathBuf>,
+    certify: bool,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<[String; 3]> {
+    guarded(|| {
+        if !(1..=100_000).contains(&seeds) {
+            return Err(refused(format!("seeds = {seeds}: 1 to 100000 are possible")));
+        }
+        let known = chosen(problems.as_deref(), &filter).map_err(refused)?;
+        let Ended { value, interrupt } = run(py, 1, progress, move |talk| {
+            let certify = certify.then(CertifySpec::default);
+            let filter = if filter.is_empty() { String::new() } else { format!("{filter:?}, ") };
+            let command = format!("linkwright.suite({filter}seeds={seeds})");
+            let options = SuiteOptions { seeds, command, certify, ..SuiteOptions::default() };
+            let observer = |step: &Step<'_>| {
+                talk.tell(|| {
+                    json!({ "phase": step.problem, "method": step.method.name(), "seed": step.seed,
+                            "done": step.done, "total": step.total })
+                });
+            };
+            let found = run_suite(&known, &options, &talk.cancel, &observer).map_err(|e| e.to_string())?;
+            let json = serde_json::to_string(&found).map_err(|e| e.to_string())?;
+            Ok::<_, String>([json, suite_text(&found, Colour::Never), suite_markdown(&found)])
+        })?;
+        match interrupt {
+            None => value.map_err(refused),
+            Some(interrupt) => match value {
+                Ok(found) => Err(carrying(py, interrupt, found.into_pyobject(py)?.into_any())),
+                Err(_) => Err(interrupt),
+            },
+        }
+    })
+}
+
+/// The JSON Schema of a kind of file: problem, linkage or record.
+#[pyfunction]
+pub fn schema<'py>(py: Python<'py>, kind: &str) -> PyResult<Bound<'py, PyAny>> {
+    guarded(|| {
+        let kind: SchemaKind = kind.parse().map_err(refused)?;
+        values::to_python(py, &schema_of(kind))
+    })
+}
+
+/// Runs the command line with these words, the first of which is the program's name; the exit code.
+#[cfg(feature = "command")]
+#[pyfunction]
+pub fn main(py: Python<'_>, words: Vec<std::ffi::OsString>) -> u8 {
+    py.detach(|| linkwright::internals::app::cli::main_of(words))
+}
+
+/// Panics inside of the search's thread pool, for a test that the border holds.
+#[pyfunction]
+pub fn _panic(py: Python<'_>) -> PyResult<()> {
+    guarded(|| run_whole(py, |_| -> () { std::panic::panic_any("a test of the border") }))
+}
+
+/// Panics on the calling thread, likewise.
+#[pyfunction]
+pub fn _panic_here() -> PyResult<()> {
+    guarded(|| std::panic::panic_any("a test of the border"))
+}

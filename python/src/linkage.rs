@@ -1,0 +1,400 @@
+//! Four-bars: positions, velocities and accelerations at many crank angles.
+
+use crate::arrays::{Input, Output};
+use crate::errors::{guarded, refused};
+use crate::values;
+use linkwright::internals::files::linkage_file::{self, LinkageFile};
+use linkwright::internals::mechanism::analysis;
+use linkwright::internals::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
+use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, LinkageMotion};
+use linkwright::internals::mechanism::four_bar::positions::JointColumns;
+use linkwright::{AssemblyMode, CouplerCurve, CouplerSide, NaturalCoordinates, Unit};
+use numpy::PyArrayDyn;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// A planar four-bar linkage.
+///
+/// A, B: fixed pivots of crank and follower. C, D: moving pins. P: coupler point. a = |AC| crank, b = |CD| coupler,
+/// c = |BD| follower, d = |CP|, e = |DP|. t1 = 1: D lies left of the line from C to B; t2 = 1: P lies left of the line
+/// from C to D.
+///
+/// Raises ProblemError for lengths of no linkage.
+///
+/// >>> import linkwright as lw, math
+/// >>> linkage = lw.FourBar((0, 0), (4, 1), 2, 5, 5, 5, 5, t1=1, t2=1)
+/// >>> linkage.type
+/// 'crank-rocker'
+/// >>> at = linkage.positions([0.3, math.nan])
+/// >>> at.C.round(3).tolist()
+/// [[1.911, 0.591], [nan, nan]]
+#[pyclass(frozen, module = "linkwright._linkwright")]
+#[derive(Clone)]
+pub struct FourBar {
+    /// The linkage with its name and unit.
+    pub file: LinkageFile,
+}
+
+/// Positions of the moving joints; NaN where the loop does not close. Shape: that of the crank angles, and 2.
+#[pyclass(frozen, module = "linkwright._linkwright")]
+pub struct Positions {
+    /// The crank pin.
+    #[pyo3(get, name = "C")]
+    crank_pin: Py<PyArrayDyn<f64>>,
+    /// The follower pin.
+    #[pyo3(get, name = "D")]
+    follower_pin: Py<PyArrayDyn<f64>>,
+    /// The coupler point.
+    #[pyo3(get, name = "P")]
+    coupler_point: Py<PyArrayDyn<f64>>,
+}
+
+/// Velocities or accelerations; NaN where the loop does not close and at toggles.
+#[pyclass(frozen, module = "linkwright._linkwright")]
+pub struct Rates {
+    /// Of the crank pin: length a second, or a second squared; shape (n, 2).
+    #[pyo3(get, name = "C")]
+    crank_pin: Py<PyArrayDyn<f64>>,
+    /// Of the follower pin.
+    #[pyo3(get, name = "D")]
+    follower_pin: Py<PyArrayDyn<f64>>,
+    /// Of the coupler point.
+    #[pyo3(get, name = "P")]
+    coupler_point: Py<PyArrayDyn<f64>>,
+    /// Of the coupler: rad/s, or rad/s^2; shape (n,).
+    #[pyo3(get)]
+    coupler: Py<PyArrayDyn<f64>>,
+    /// Of the follower: rad/s, or rad/s^2; shape (n,).
+    #[pyo3(get)]
+    follower: Py<PyArrayDyn<f64>>,
+}
+
+/// Returns the unit of a label.
+///
+/// # Errors
+/// `ProblemError` for another text.
+pub fn unit(label: Option<&str>) -> PyResult<Option<Unit>> {
+    let of = |label: &str| {
+        let found = Unit::ALL.into_iter().find(|unit| unit.label() == label);
+        found.ok_or_else(|| refused(format!("`unit` is no unit of length: {label}; choose mm, cm, m or in")))
+    };
+    label.map(of).transpose()
+}
+
+fn sign<S: TryFrom<i64, Error = String>>(key: &str, value: i64) -> PyResult<S> {
+    S::try_from(value).map_err(|why| refused(format!("{key}: {why}")))
+}
+
+impl FourBar {
+    fn rates<'py>(
+        &self,
+        py: Python<'py>,
+        phi: &Bound<'py, PyAny>,
+        input: CrankMotion,
+        read: fn(&LinkageMotion) -> [f64; 8],
+    ) -> PyResult<Rates> {
+        let angles = Input::of(phi, "phi")?;
+        let shape = angles.shape();
+        let linear = || Output::new(py, shape, Some(2));
+        let angular = || Output::new(py, shape, None);
+        let (mut points, mut links) = ([linear()?, linear()?, linear()?], [angular()?, angular()?]);
+        {
+            let numbers = angles.numbers()?;
+            let [c, d, p] = &mut points;
+            let (c, d, p) = (c.points()?, d.points()?, p.points()?);
+            let [coupler, follower] = &mut links;
+            let (coupler, follower) = (coupler.numbers()?, follower.numbers()?);
+            let linkage = self.file.linkage;
+            py.detach(|| {
+                for (i, angle) in numbers.iter().enumerate() {
+                    let motion = linkage.motion(*angle, input).definite();
+                    let [cx, cy, dx, dy, px, py, w3, w4] = motion.as_ref().map_or([f64::NAN; 8], read);
+                    (c[i], d[i], p[i]) = ([cx, cy], [dx, dy], [px, py]);
+                    (coupler[i], follower[i]) = (w3, w4);
+                }
+            });
+        }
+        let ([crank_pin, follower_pin, coupler_point], [coupler, follower]) =
+            (points.map(Output::array), links.map(Output::array));
+        Ok(Rates { crank_pin, follower_pin, coupler_point, coupler, follower })
+    }
+}
+
+#[pymethods]
+impl FourBar {
+    #[new]
+    #[pyo3(
+        signature = (A, B, a, b, c, d, e, t1 = 1, t2 = -1, *, name = "linkage", unit = None),
+        text_signature = "(A, B, a, b, c, d, e, t1=1, t2=-1, *, name='linkage', unit=None)"
+    )]
+    #[expect(non_snake_case, reason = "the letters of a linkage file")]
+    #[expect(clippy::too_many_arguments, reason = "the parameters of a four-bar")]
+    fn new(
+        A: [f64; 2],
+        B: [f64; 2],
+        a: f64,
+        b: f64,
+        c: f64,
+        d: f64,
+        e: f64,
+        t1: i64,
+        t2: i64,
+        name: &str,
+        unit: Option<&str>,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let parameters = NaturalCoordinates {
+                crank_pivot: A,
+                follower_pivot: B,
+                crank: a,
+                coupler: b,
+                follower: c,
+                crank_side: d,
+                follower_side: e,
+                assembly: sign::<AssemblyMode>("t1", t1)?,
+                side: sign::<CouplerSide>("t2", t2)?,
+            };
+            let linkage = linkwright::FourBar::new(parameters).map_err(refused)?;
+            let unit = self::unit(unit)?;
+            Ok(FourBar { file: LinkageFile { name: name.to_owned(), unit, linkage } })
+        })
+    }
+
+    /// The name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.file.name
+    }
+
+    /// The unit of its lengths: mm, cm, m or in.
+    #[getter]
+    fn unit(&self) -> Option<&'static str> {
+        self.file.unit.map(Unit::label)
+    }
+
+    /// The fixed pivot of the crank.
+    #[getter]
+    #[pyo3(name = "A")]
+    fn crank_pivot(&self) -> (f64, f64) {
+        self.file.linkage.natural_coordinates().crank_pivot.into()
+    }
+
+    /// The fixed pivot of the follower.
+    #[getter]
+    #[pyo3(name = "B")]
+    fn follower_pivot(&self) -> (f64, f64) {
+        self.file.linkage.natural_coordinates().follower_pivot.into()
+    }
+
+    /// |AC|, the crank.
+    #[getter]
+    fn a(&self) -> f64 {
+        self.file.linkage.crank()
+    }
+
+    /// |CD|, the coupler.
+    #[getter]
+    fn b(&self) -> f64 {
+        self.file.linkage.coupler()
+    }
+
+    /// |BD|, the follower.
+    #[getter]
+    fn c(&self) -> f64 {
+        self.file.linkage.follower()
+    }
+
+    /// |CP|.
+    #[getter]
+    fn d(&self) -> f64 {
+        self.file.linkage.crank_side()
+    }
+
+    /// |DP|.
+    #[getter]
+    fn e(&self) -> f64 {
+        self.file.linkage.follower_side()
+    }
+
+    /// |AB|.
+    #[getter]
+    fn ground(&self) -> f64 {
+        self.file.linkage.ground()
+    }
+
+    /// 1: D lies left of the line from C to B; -1: right.
+    #[getter]
+    fn t1(&self) -> i64 {
+        self.file.linkage.assembly().into()
+    }
+
+    /// 1: P lies left of the line from C to D; -1: right.
+    #[getter]
+    fn t2(&self) -> i64 {
+        self.file.linkage.side().into()
+    }
+
+    /// crank-rocker, rocker-crank, double-crank, double-rocker, triple-rocker or change-point; None: no linkage.
+    #[getter]
+    fn r#type(&self) -> Option<&'static str> {
+        self.file.linkage.linkage_type().map(|found| found.name())
+    }
+
+    /// p + q - s - l, a length.
+    #[getter]
+    fn grashof_margin(&self) -> f64 {
+        self.file.linkage.mobility().grashof_margin
+    }
+
+    /// The longest over the shortest of ground, a, b, c.
+    #[getter]
+    fn link_ratio(&self) -> f64 {
+        self.file.linkage.link_ratio()
+    }
+
+    /// Type, range of the input, toggles, circuits, branches, transmission angles (degrees).
+    #[getter]
+    fn mobility<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        guarded(|| values::data(py, &analysis::mobility(&self.file.linkage)))
+    }
+
+    /// Computes the position at crank angles (radians from the x axis, any shape).
+    fn positions<'py>(&self, py: Python<'py>, phi: &Bound<'py, PyAny>) -> PyResult<Positions> {
+        guarded(|| {
+            let angles = Input::of(phi, "phi")?;
+            let column = || Output::new(py, angles.shape(), Some(2));
+            let mut columns = [column()?, column()?, column()?];
+            {
+                let numbers = angles.numbers()?;
+                let [c, d, p] = &mut columns;
+                let joints = JointColumns {
+                    crank_pin: c.points()?,
+                    follower_pin: d.points()?,
+                    coupler_point: p.points()?,
+                };
+                let linkage = self.file.linkage;
+                py.detach(|| linkage.positions(numbers, joints));
+            }
+            let [crank_pin, follower_pin, coupler_point] = columns.map(Output::array);
+            Ok(Positions { crank_pin, follower_pin, coupler_point })
+        })
+    }
+
+    /// Computes velocities at crank angles, for a crank speed in rad/s.
+    #[pyo3(signature = (phi, omega = 1.0))]
+    fn velocities<'py>(&self, py: Python<'py>, phi: &Bound<'py, PyAny>, omega: f64) -> PyResult<Rates> {
+        guarded(|| {
+            self.rates(py, phi, CrankMotion::steady(omega), |m| {
+                let [c, d, p] = [m.crank_pin, m.follower_pin, m.coupler_point].map(|joint| joint.velocity);
+                [c.re, c.im, d.re, d.im, p.re, p.im, m.coupler.speed_rad_s, m.follower.speed_rad_s]
+            })
+        })
+    }
+
+    /// Computes accelerations at crank angles, for a crank's speed (rad/s) and acceleration (rad/s^2).
+    #[pyo3(signature = (phi, omega = 1.0, alpha = 0.0))]
+    fn accelerations<'py>(
+        &self,
+        py: Python<'py>,
+        phi: &Bound<'py, PyAny>,
+        omega: f64,
+        alpha: f64,
+    ) -> PyResult<Rates> {
+        guarded(|| {
+            let input = CrankMotion { speed_rad_s: omega, acceleration_rad_s2: alpha };
+            self.rates(py, phi, input, |m| {
+                let [c, d, p] =
+                    [m.crank_pin, m.follower_pin, m.coupler_point].map(|joint| joint.acceleration);
+                let links = [m.coupler.acceleration_rad_s2, m.follower.acceleration_rad_s2];
+                [c.re, c.im, d.re, d.im, p.re, p.im, links[0], links[1]]
+            })
+        })
+    }
+
+    /// Computes the transmission angle at crank angles, in [0, 180] degrees; NaN where the loop does not close.
+    fn transmission_deg<'py>(
+        &self,
+        py: Python<'py>,
+        phi: &Bound<'py, PyAny>,
+    ) -> PyResult<Py<PyArrayDyn<f64>>> {
+        guarded(|| {
+            let angles = Input::of(phi, "phi")?;
+            let mut found = Output::new(py, angles.shape(), None)?;
+            {
+                let (numbers, places) = (angles.numbers()?, found.numbers()?);
+                let linkage = self.file.linkage;
+                py.detach(|| {
+                    for (place, angle) in places.iter_mut().zip(numbers) {
+                        *place = linkage.transmission_angle(*angle).map_or(f64::NAN, f64::to_degrees);
+                    }
+                });
+            }
+            Ok(found.array())
+        })
+    }
+
+    /// Samples the coupler curve of the circuit that holds the position at the crank angle `at`; shape (m, 2).
+    #[pyo3(
+        signature = (at = 0.0, samples = DEFAULT_SAMPLES),
+        text_signature = "($self, at=0.0, samples=720)"
+    )]
+    fn coupler_curve(&self, py: Python<'_>, at: f64, samples: usize) -> PyResult<Py<PyArrayDyn<f64>>> {
+        guarded(|| {
+            if !(8..=100_000).contains(&samples) {
+                return Err(PyValueError::new_err(format!("samples = {samples}: 8 to 100000 are possible")));
+            }
+            let linkage = self.file.linkage;
+            let curve = CouplerCurve::through(&linkage, at, linkage.assembly(), samples);
+            let points: Vec<[f64; 2]> = curve.points().map(|p| [p.re, p.im]).collect();
+            let mut found = Output::new(py, &[points.len()], Some(2))?;
+            found.points()?.copy_from_slice(&points);
+            Ok(found.array())
+        })
+    }
+
+    /// Returns the text of its linkage file.
+    fn to_toml(&self) -> String {
+        let name = linkwright::internals::files::name::legal(&self.file.name, "linkage");
+        linkage_file::to_toml(&name, self.file.unit, &self.file.linkage)
+    }
+
+    /// Returns the other linkages of the same coupler curve.
+    fn cognates(&self) -> PyResult<Vec<FourBar>> {
+        guarded(|| {
+            let found = self.file.linkage.cognates().into_iter().flatten().map(|cognate| cognate.linkage);
+            let named = |(i, linkage): (usize, linkwright::FourBar)| {
+                let suffix = format!("-cognate-{}", i + 1);
+                let name = linkwright::internals::files::name::with_suffix(&self.file.name, &suffix);
+                FourBar { file: LinkageFile { name, unit: self.file.unit, linkage } }
+            };
+            Ok(found.enumerate().map(named).collect())
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let [ax, ay, bx, by, a, b, c, d, e] = self.file.linkage.natural_coordinates().numbers();
+        let (t1, t2) = (self.t1(), self.t2());
+        format!(
+            "FourBar(A=({ax:?}, {ay:?}), B=({bx:?}, {by:?}), a={a:?}, b={b:?}, c={c:?}, d={d:?}, e={e:?}, t1={t1}, \
+             t2={t2})"
+        )
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<FourBar>().is_ok_and(|other| other.get().file.linkage == self.file.linkage)
+    }
+
+    fn __hash__(&self) -> u64 {
+        use std::hash::{Hash, Hasher};
+        let mut hasher = std::collections::hash_map::DefaultHasher::new();
+        let numbers = self.file.linkage.natural_coordinates().numbers();
+        // Equal numbers have equal bits, but for the two zeros.
+        (numbers.map(|x| (x + 0.0).to_bits()), self.t1(), self.t2()).hash(&mut hasher);
+        hasher.finish()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+        let read = py.import("linkwright._linkwright")?.getattr("parse_linkage")?;
+        Ok((read, (self.to_toml(),)))
+    }
+}

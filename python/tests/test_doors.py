@@ -1,0 +1,172 @@
+"""Everything that the command line does, against the command line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from conftest import ARC, call
+
+import linkwright as lw
+
+
+@pytest.fixture(scope="module")
+def saved(arc: lw.Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("results") / "arc"
+    arc.save(place)
+    return place
+
+
+def test_verify_finds_what_was_changed(arc: lw.Result, tmp_path: Path) -> None:
+    assert lw.verify(arc)
+    changed = json.loads(arc.record_json)
+    changed["candidates"][0]["error"]["rms"] = 0.5
+    (tmp_path / "record.json").write_text(json.dumps(changed))
+    found = lw.verify(tmp_path / "record.json")
+    assert not found
+    assert any(m["rank"] == 1 and "rms" in m["what"] for m in found.mismatches)
+    assert "NOT true" in repr(found)
+
+
+def test_analyze_is_that_of_the_command(arc: lw.Result, saved: Path, program: list[str]) -> None:
+    said = call([*program, "analyze", str(saved), "--cycle", "7", "--omega", "2", "--json"])
+    found = lw.analyze(arc, cycle=7, omega=2.0)
+    assert found.data == json.loads(said.stdout)
+    assert lw.analyze(saved, cycle=7, omega=2.0).data == found.data
+    assert lw.analyze(arc.candidates[0].linkage, angle_deg=[0, 30.0]).data["configurations"][0]["rows"][1]["crank_deg"] == 30
+    assert found.svg.startswith("<svg") or found.svg.startswith("<?xml")
+    assert len(found.to_frame()) == 7
+
+
+def test_cognates_trace_the_same_curve(arc: lw.Result) -> None:
+    linkage = arc.candidates[0].linkage
+    found = lw.cognates(arc)
+    assert found == linkage.cognates() == lw.cognates(arc.candidates[0])
+    for cognate in found:
+        # The same curve: its extreme points, to what 0.5 degrees of the input leave.
+        own, other = linkage.coupler_curve(0.1), cognate.coupler_curve(0.1)
+        assert abs(own.max(axis=0) - other.max(axis=0)).max() < 1e-2 or other.shape != own.shape
+
+
+def test_compare_is_that_of_the_command(arc: lw.Result, saved: Path, program: list[str]) -> None:
+    said = call([*program, "compare", str(saved), "--json"])
+    opened = lw.open(saved)
+    assert lw.compare(opened).data == json.loads(said.stdout)
+    first = opened.candidates[0]
+    both = lw.compare(first, first.linkage, reference=first)
+    assert len(both.data["candidates"] if "candidates" in both.data else both.to_frame()) == 2
+    assert "<svg" in both._repr_html_()
+    assert both.html.lower().startswith("<!doctype html>")
+    assert len(lw.compare(first.linkage, target=lw.path(ARC)).to_frame()) == 1
+
+
+def test_build_is_that_of_the_command(arc: lw.Result, saved: Path, program: list[str]) -> None:
+    said = call([*program, "build", str(saved), "--hole", "0.1", "--margin", "0.1"])
+    found = lw.build(arc, hole=0.1, margin=0.1)
+    assert found.text in said.stdout
+    assert found.data["hole"] == pytest.approx(0.1)
+    assert len(found.data["sensitivity"]["dimensions"]) == 9
+    assert lw.build(arc.candidates[0].linkage).data["distances"]
+
+
+def test_snap_brings_lengths_to_the_stock(k18: lw.Result) -> None:
+    snapped = lw.snap(k18, grid=0.05, snap=["a", "b"], keep=["A"], threads=2)
+    best = snapped.candidates[0].linkage
+    for length in (best.a, best.b):
+        assert length / 0.05 == pytest.approx(round(length / 0.05), abs=1e-9)
+    assert best.A == k18.candidates[0].linkage.A
+    assert lw.verify(snapped).ok
+    crank = k18.candidates[0].linkage.a
+    stock = [0.98 * crank, 1.01 * crank]
+    assert lw.snap(k18.candidates[0], lengths=stock, snap=["a"]).candidates[0].linkage.a in stock
+
+
+@pytest.mark.parametrize("format", ["svg", "svg-plates", "dxf", "dxf-plates", "stl", "scad", "csv", "toml", "json", "cut-list", "cut-list-csv"])
+def test_every_export_has_the_bytes_of_the_command(
+    format: str, arc: lw.Result, saved: Path, program: list[str], tmp_path: Path
+) -> None:
+    assert format in lw.formats()
+    file = tmp_path / "file"
+    said = call([*program, "export", str(saved), "--format", format, "--set", "scale=20", "--out", str(file)])
+    assert said.returncode == 0, said.stderr
+    assert arc.export(format, scale=20) == file.read_bytes()
+    arc.candidates[0].to_file(tmp_path / "mine", format, scale=20)
+    assert (tmp_path / "mine").read_bytes() == file.read_bytes()
+
+
+def test_pictures_are_made(arc: lw.Result, tmp_path: Path) -> None:
+    assert arc.export("png", size_px=200)[:4] == b"\x89PNG"
+    assert arc.export("gif", size_px=100, frames=3)[:3] == b"GIF"
+    for name in ("arc.dxf", "arc.svg", "arc.stl", "arc.toml", "arc.txt"):
+        arc.to_file(tmp_path / name)
+        assert (tmp_path / name).stat().st_size > 100
+    arc.to_file(tmp_path / "report.html")
+    assert "<svg" in (tmp_path / "report.html").read_text()
+    assert lw.load(tmp_path / "arc.toml") == arc.candidates[0].linkage
+
+
+def test_a_bound_is_proved(literature: Path, tmp_path: Path) -> None:
+    found = lw.synth(literature / "k18.toml")
+    told: list[dict[str, object]] = []
+    proved = lw.certify(found, gap=0.9, time_limit_s=20, progress=told.append)
+    assert found.certificate is None
+    assert proved.certificate is not None
+    assert proved.certificate["lower_bound"] <= found.candidates[0].error["sum_sq"]
+    proved.save(tmp_path / "proved")
+    assert (tmp_path / "proved" / "certificate.leaves").is_file()
+    assert lw.verify(tmp_path / "proved").ok
+
+
+def test_the_suite_runs() -> None:
+    found = lw.suite("a6b", seeds=1)
+    assert found.data["seeds"] == 1
+    assert [p["name"] for p in found.data["problems"]]
+    assert found.text
+    assert found.markdown.startswith("#")
+
+
+def test_exact_linkages_come_by_method(root: Path) -> None:
+    files = [f for f in sorted((root / "problems").rglob("*.toml")) if 'method = "continuation"' in f.read_text()]
+    assert files
+    problem = lw.load_problem(files[0])
+    assert problem.resolved["solve"]["method"] == "continuation"
+
+
+def test_the_schema_is_that_of_the_command(program: list[str]) -> None:
+    for kind in ("problem", "linkage", "record"):
+        assert lw.schema(kind) == json.loads(call([*program, "schema", kind]).stdout)
+
+
+def test_a_notebook_shows_drawing_and_table(arc: lw.Result) -> None:
+    html = arc._repr_html_()
+    assert "<svg" in html
+    assert "<pre" in html
+    assert "<script" not in html
+    assert "arc" in repr(arc)
+    assert "rms" in repr(arc.candidates[0])
+
+
+def test_tables_are_frames(arc: lw.Result) -> None:
+    frame = arc.to_frame()
+    assert len(frame) == len(arc)
+    assert frame["rms"].iloc[0] == pytest.approx(arc.candidates[0].error["rms"], rel=1e-6, abs=1e-15)
+
+
+def test_drawings_and_animations_are_made(k18: lw.Result) -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    import matplotlib.pyplot as plt
+
+    ax = k18.plot()
+    assert len(ax.lines) >= 3
+    moving = k18.animate(frames=6)
+    assert "<script" in moving.to_jshtml(fps=10)
+    plt.close("all")
+
+
+def test_the_command_is_installed(program: list[str]) -> None:
+    said = call([*program, "--version"])
+    assert said.stdout == f"linkwright {lw.__version__}\n"
+    assert call([*program, "synth"]).returncode == 2
+    assert "studio" in call([*program, "--help"]).stdout

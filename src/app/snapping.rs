@@ -1,0 +1,94 @@
+//! The subject of a snap: a linkage with the problem on which it is measured, and the dimensions that stay as they are.
+
+use crate::app::inputs::{Given, NoCandidate};
+use crate::files::diagnostic::escaped;
+use crate::mechanism::{FourBar, Unit, xy};
+use crate::record::{Candidate, ProblemRecord};
+use crate::report::text::clean;
+use crate::synthesis::snap::{Fixed, Length, own_curve};
+use crate::task::{Problem, TaskError};
+
+/// The linkage to snap, with its problem.
+#[derive(Clone, Debug)]
+pub struct Subject {
+    /// Its label, in words.
+    pub label: String,
+    /// The name of its problem or file.
+    pub name: String,
+    /// The source of the problem.
+    pub source: Option<String>,
+    /// The unit of its lengths.
+    pub unit: Option<Unit>,
+    /// The problem.
+    pub problem: Problem,
+    /// The linkage, judged on the problem.
+    pub candidate: Candidate,
+}
+
+/// The reason why there is nothing to snap.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoSubject {
+    /// The linkage has no position.
+    #[error("{0} cannot be assembled, so it has no curve to keep")]
+    NotAssembled(String),
+    /// The result has no candidate.
+    #[error(transparent)]
+    NoCandidate(#[from] NoCandidate),
+    /// The problem of the record is invalid.
+    #[error(transparent)]
+    Problem(#[from] TaskError),
+    /// The candidate lacks a position.
+    #[error("{0} has no position for each of the target's points")]
+    Positions(String),
+}
+
+impl Subject {
+    /// Returns the subject of an input: of a result the candidate that is named, else the first; a linkage without a run
+    /// is measured on its own coupler curve.
+    ///
+    /// # Errors
+    /// [`NoSubject`].
+    pub fn of(given: Given) -> Result<Self, NoSubject> {
+        match given {
+            Given::Linkage(file) => {
+                let found = own_curve(&file.linkage);
+                let (problem, candidate) = found.ok_or_else(|| NoSubject::NotAssembled(clean(&file.name)))?;
+                let label = format!("{}, measured on its own coupler curve", clean(&file.name));
+                Ok(Subject { label, name: file.name, source: None, unit: file.unit, problem, candidate })
+            }
+            Given::Run(run) => {
+                let chosen = run.one()?;
+                let (label, candidate) = (escaped(&chosen.label), chosen.candidate.clone());
+                let ProblemRecord { name, source, unit, resolved, .. } = run.record.problem;
+                let problem = Problem::new(resolved)?;
+                let points = problem.task().len();
+                if candidate.crank_deg.len() != points || candidate.t1_at.len() != points {
+                    return Err(NoSubject::Positions(label));
+                }
+                Ok(Subject { label, name, source, unit, problem, candidate })
+            }
+        }
+    }
+}
+
+/// Returns the dimensions that are fixed: those of the linkage that are kept (`ground, a, b, c, d, e, A, B` or
+/// `ground_angle_deg`), and those that are put at a value of their own.
+pub fn fixed(linkage: &FourBar, keep: &[String], set: &[(String, f64)]) -> Fixed {
+    let mut fixed = Fixed::default();
+    let angle = linkage.ground_angle().to_degrees();
+    for key in keep {
+        match (Length::named(key), key.as_str()) {
+            (Some(length), _) => fixed = fixed.with(length, length.of(linkage)),
+            (None, "A") => fixed.crank_pivot = Some(xy(linkage.crank_pivot())),
+            (None, "B") => fixed.follower_pivot = Some(xy(linkage.follower_pivot())),
+            (None, _) => fixed.ground_angle_deg = Some(angle),
+        }
+    }
+    for (key, value) in set {
+        match Length::named(key) {
+            Some(length) => fixed = fixed.with(length, *value),
+            None => fixed.ground_angle_deg = Some(*value),
+        }
+    }
+    fixed
+}
