@@ -24,7 +24,7 @@ const {
   isSameButForName,
   longestTimes,
   nearestInstead,
-  pivotsBelow,
+  pivotsBeside,
   withExtent,
   withLengthsTimes,
   withLongest,
@@ -70,7 +70,7 @@ test("a small stroke far from the origin keeps its shape", () => {
 
 test("boxes far from the origin are as fine as their size", () => {
   assert.deepEqual(resized([1000, 1000, 1002, 1003], 2, [1002.3456, 1003.777], 0.01), [1000, 1000, 1002.346, 1003.777]);
-  const [left, low, right, high] = pivotsBelow([
+  const [left, low, right, high] = pivotsBeside([
     [1000.2, 50],
     [1001.6, 51],
   ]);
@@ -239,7 +239,18 @@ test("in a smaller frame the path is kept in sight at its scale, and a view that
   assert.deepEqual([moved.x, moved.scale], [0, 2]);
   assert.ok(view.isWithin([-20, -100, 20, -70], view.windowOf(moved, frame)));
   assert.ok(Math.abs(moved.y) < 100, "no farther than it must");
-  assert.deepEqual(view.inSight(at, frame, [-20, -300, 20, 0]), at, "no room for it");
+  const large = view.inSight(at, frame, [-20, -300, 20, 0]);
+  assert.deepEqual([large.x, large.y], [0, -150], "no room for it: its middle");
+});
+
+test("the box of the pivots lies below a path, of a walking machine above it", () => {
+  const path = [
+    [0, 0],
+    [40, 0],
+    [20, 10],
+  ];
+  assert.ok(pivotsBeside(path)[3] < 0);
+  assert.ok(pivotsBeside(path, true)[1] > 10);
 });
 
 test("words for a figure: how near, how it transmits, what limits it", () => {

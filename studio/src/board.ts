@@ -15,6 +15,9 @@ import { Tools } from "./tools";
 import type { Underlay } from "./underlay";
 import * as view from "./view";
 
+/** A board of fewer pixels is low. */
+const LOW = 380;
+
 /** A pinned linkage, and the number of its colour. */
 export interface Pinned {
   moving: Moving;
@@ -264,8 +267,8 @@ export class Board implements Surface {
     const y = this.height - 14;
     const longest = task.points.length > 2 ? longestMax(task) : null;
     this.scaleBar.replaceChildren(...this.bar(false, length, y, ""));
-    // A limit that is longer than the board is no ruler.
-    if (longest !== null && longest * this.view.scale < this.width - 28)
+    // A limit that is longer than the board is no ruler, and a low board has no room for it.
+    if (longest !== null && longest * this.view.scale < this.width - 28 && this.height > LOW)
       this.scaleBar.append(...this.bar(true, longest, y - 22, "limit of the longest link: "));
     // Another view of one that stands still.
     this.pose(this.part);

@@ -165,6 +165,7 @@ class Page {
       () => this.task,
       (task) => this.replace(task),
       () => this.board.fit(),
+      () => this.board.isWalker,
     );
     listenToControls({
       back: (way) => this.back(way),
@@ -175,6 +176,12 @@ class Page {
         this.store.note();
         this.walk(on);
         this.keep();
+        const hips = on && this.scene.chosen()?.shown.linkage;
+        const ground = tasks.boxOf(this.task.points)?.[1] ?? 0;
+        if (hips && Math.min(hips.A[1], hips.B[1]) < ground)
+          this.desk.say(
+            "The hips lie below the ground. Under Wishes tick “both fixed pivots inside a box”: the box of a walking machine lies above its path.",
+          );
       },
       close: (closed) => this.replace(tasks.settled({ ...this.task, closed })),
       hideHints: () => {

@@ -9,7 +9,7 @@ import {
   extentTimes,
   isExact,
   longestTimes,
-  pivotsBelow,
+  pivotsBeside,
   settled,
   sizeOf,
   spaceAround,
@@ -43,7 +43,7 @@ const TYPES: Record<string, Task["types"]> = {
 
 const SIDES = ["left", "bottom", "right", "top"];
 const BOXES = [
-  { key: KINDS[0], box: "pivots", numbers: "box-numbers", prefix: "", around: pivotsBelow },
+  { key: KINDS[0], box: "pivots", numbers: "box-numbers", prefix: "", around: pivotsBeside },
   { key: KINDS[1], box: "space", numbers: "space-numbers", prefix: "space-", around: spaceAround },
 ] as const;
 /** Fields of one number, and what of the task they are. */
@@ -61,7 +61,12 @@ const CHECKS = [
 ] as const;
 
 /** Listens to the controls; every change makes another task of the one that stands. */
-export function listenToRequirements(now: () => Task, change: (task: Task) => void, shown: () => void) {
+export function listenToRequirements(
+  now: () => Task,
+  change: (task: Task) => void,
+  shown: () => void,
+  isWalker: () => boolean,
+) {
   const on = (id: string, act: () => Task | null) =>
     byId(id).addEventListener("change", () => {
       const task = act();
@@ -69,7 +74,7 @@ export function listenToRequirements(now: () => Task, change: (task: Task) => vo
     });
   for (const { key, box, prefix, around } of BOXES) {
     byId(box).addEventListener("change", () => {
-      change({ ...now(), [key]: input(box).checked ? around(now().points) : undefined });
+      change({ ...now(), [key]: input(box).checked ? around(now().points, isWalker()) : undefined });
       if (input(box).checked) shown();
     });
     SIDES.forEach((side, i) => {

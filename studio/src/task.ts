@@ -232,13 +232,14 @@ export function roundTo(value: number, size: number, digits: number): number {
 const rounded = (box: Box) =>
   box.map((value) => roundTo(value, Math.hypot(box[2] - box[0], box[3] - box[1]), 3)) as Box;
 
-/** A box below the target, as wide as it. */
-export function pivotsBelow(points: Point[]): Box {
+/** A box for the pivots below the target, as wide as it; of a walking machine above, as its legs hang from there. */
+export function pivotsBeside(points: Point[], isWalker = false): Box {
   const around = boxOf(points);
   if (!around) return [-50, -50, 50, 0];
   const [left, low, right, high] = around;
   const size = Math.max(right - left, high - low, 1e-6);
-  return rounded([left - 0.3 * size, low - 1.2 * size, right + 0.3 * size, low - 0.1 * size]);
+  const [from, to] = isWalker ? [high + 0.6 * size, high + 2 * size] : [low - 1.2 * size, low - 0.1 * size];
+  return rounded([left - 0.3 * size, from, right + 0.3 * size, to]);
 }
 
 /** A box around the target, with room for links. */

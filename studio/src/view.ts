@@ -97,15 +97,14 @@ export function around(frame: Frame, [left, low, right, high]: Box): View {
   return { x: (left + right) / 2, y: (low + high) / 2, scale: limited(scale) };
 }
 
-/** The view moved as little as brings a box into a frame that has become smaller; the scale stays. A box without room in
- * it moves nothing. */
+/** The view moved as little as brings a box into a frame that has become smaller; the scale stays. A box without room has
+ * its middle in the middle. */
 export function inSight(view: View, frame: Frame, [left, low, right, high]: Box): View {
-  const rim = RIM / 2;
-  const [wide, tall] = [(frame.width / 2 - rim) / view.scale, (frame.height / 2 - rim) / view.scale];
-  if (right - left > 2 * wide || high - low > 2 * tall) return view;
-  const near = (middle: number, from: number, to: number, half: number) =>
-    Math.min(Math.max(middle, to - half), from + half);
-  return { ...view, x: near(view.x, left, right, wide), y: near(view.y, low, high, tall) };
+  const near = (middle: number, from: number, to: number, pixels: number) => {
+    const half = (pixels - RIM) / 2 / view.scale;
+    return to - from > 2 * half ? (from + to) / 2 : Math.min(Math.max(middle, to - half), from + half);
+  };
+  return { ...view, x: near(view.x, left, right, frame.width), y: near(view.y, low, high, frame.height) };
 }
 
 /** What of the plane is in view. */
