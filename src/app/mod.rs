@@ -9,6 +9,7 @@
 //! | [`snapping`] | the subject of a snap, and the dimensions that stay as they are |
 //! | [`studio`] | a local page that answers while a target is drawn |
 //! | [`suite`] | the suite: benchmark problems whose answer is known, each run from many seeds, and compared with the population searches at equal evaluations and with published answers |
+//! | [`sweep`] | sweeps: a plan of many problems, its shards of jobs, and their merged rows |
 
 #[cfg(feature = "cli")]
 pub mod cli;
@@ -19,3 +20,4 @@ pub mod snapping;
 #[cfg(feature = "studio")]
 pub mod studio;
 pub mod suite;
+pub mod sweep;

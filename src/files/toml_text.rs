@@ -56,6 +56,16 @@ impl<'a> TomlText<'a> {
         self.about_file(message).at(self.place(path).map(|(_, value)| value))
     }
 
+    /// Returns a diagnostic about the value at a path whose parts may have dots in them.
+    pub fn at_path(&self, parts: &[String], message: impl Into<String>) -> Diagnostic {
+        self.about_file(message).at(self.span_of(parts).map(|(_, value)| value))
+    }
+
+    /// Returns a diagnostic about the key at such a path.
+    pub fn at_key_path(&self, parts: &[String], message: impl Into<String>) -> Diagnostic {
+        self.about_file(message).at(self.span_of(parts).map(|(key, _)| key))
+    }
+
     /// Returns a diagnostic about the key at a path.
     pub fn at_key(&self, path: &str, message: impl Into<String>) -> Diagnostic {
         self.about_file(message).at(self.place(path).map(|(key, _)| key))
@@ -95,7 +105,11 @@ impl<'a> TomlText<'a> {
 
     /// Returns the places of the key and of the value at a path, or of the last part of the path that exists.
     fn place(&self, path: &str) -> Option<(Range<usize>, Range<usize>)> {
-        let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
+        self.span_of(&path.split('.').map(str::to_owned).collect::<Vec<_>>())
+    }
+
+    /// Returns the places as [`place`](Self::place) does, for a path whose parts may have dots in them.
+    pub fn span_of(&self, parts: &[String]) -> Option<(Range<usize>, Range<usize>)> {
         let mut found = None;
         self.walk(&mut |place| {
             if parts.starts_with(place.path) {

@@ -10,6 +10,12 @@ use sha2::{Digest, Sha256};
 #[error("the problem cannot be written as JSON: {0}")]
 pub struct NotWritten(String);
 
+impl From<serde_json::Error> for NotWritten {
+    fn from(error: serde_json::Error) -> Self {
+        NotWritten(error.to_string())
+    }
+}
+
 /// The reason why a record's problem cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProblemError {
@@ -54,7 +60,7 @@ pub fn digest(spec: &ProblemSpec) -> Result<String, NotWritten> {
         differential_evolution: &solve.differential_evolution,
         seed: solve.seed,
     })
-    .map_err(|e| NotWritten(e.to_string()))?;
+    .map_err(NotWritten::from)?;
     Ok(hex(&Sha256::digest(&text)))
 }
 

@@ -15,6 +15,7 @@
 //! | [`repeats`] | repeated hits of the best answer, and the chance that a better one was not seen |
 //! | [`statistics`] | statistics of many runs: medians, hits, the best run |
 //! | [`suite`] | the figures of a suite: problems with a known answer, many seeds each |
+//! | [`sweep`] | sweeps: many problems that are one problem with different values of some keys |
 
 use crate::mechanism::{AssemblyMode, FourBar, LinkageType, Unit};
 use crate::task::Defect;
@@ -33,6 +34,7 @@ mod pick;
 mod repeats;
 pub mod statistics;
 pub mod suite;
+pub mod sweep;
 
 pub use certificate::{Certificate, CertificatePart, Difference};
 pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};

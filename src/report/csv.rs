@@ -171,6 +171,11 @@ fn curve(candidate: &Candidate) -> Vec<[f64; CURVE_COLUMNS.len()]> {
     table
 }
 
+/// Returns a row as CSV with its line feed.
+pub(super) fn written_row(row: &[String]) -> String {
+    written(row, [])
+}
+
 /// Returns the header row and the rows as CSV with line feeds.
 pub(crate) fn written<Name: AsRef<[u8]>>(
     head: impl IntoIterator<Item = Name>,

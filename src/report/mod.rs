@@ -51,6 +51,7 @@
 //! | [`snap`] | the cost of snapping as text: before and after, and the next best linkages |
 //! | [`suite`] | a suite for the terminal and as Markdown: the same tables in two formats |
 //! | [`svg`] | the drawing of one candidate: a self-contained SVG with the linkage, its coupler curve, the target and the figures |
+//! | [`sweep`] | the outcome of a sweep: its table, and its plot over the varied keys |
 //! | [`table`] | the output of `synth`: the candidates of a run, or one line for each file of a batch |
 //! | [`text`] | formatting of numbers and foreign text for a terminal, for XML and for a spreadsheet |
 //! | [`words`] | verdicts, requirements and endings in plain words |
@@ -87,6 +88,7 @@ mod sheet;
 pub mod snap;
 pub mod suite;
 pub mod svg;
+pub mod sweep;
 pub mod table;
 pub mod text;
 mod words;

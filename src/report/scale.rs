@@ -5,6 +5,11 @@ use super::scene::round_length;
 /// The ratio of the greatest to the least figure above which a scale is logarithmic where it may be.
 pub(super) const LOGARITHMIC: f64 = 12.0;
 
+/// The colours of a scale, from its least to its greatest figure, of equal steps to the eye and to colour-blind
+/// eyes (viridis, Smith and van der Walt 2015, without its lightest end).
+const COLOURS: [[f64; 3]; 5] =
+    [[68.0, 1.0, 84.0], [59.0, 82.0, 139.0], [33.0, 145.0, 140.0], [94.0, 201.0, 98.0], [216.0, 226.0, 25.0]];
+
 /// A scale, which maps figures to the range from 0 to 1.
 pub(super) struct Scale {
     low: f64,
@@ -24,6 +29,17 @@ impl Scale {
         }
         let room = if high > low { 0.08 * (high - low) } else { 0.1 * high.abs().max(f64::MIN_POSITIVE) };
         Scale { low: (low - room).max(0.0), high: high + room, logarithmic: false }
+    }
+
+    /// Returns a scale as [`new`](Self::new) does, for figures that may be negative.
+    pub(super) fn over(values: &[f64], ratio: f64) -> Scale {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        if low >= 0.0 {
+            return Scale::new(values, ratio);
+        }
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let room = 0.08 * (high - low).max(f64::MIN_POSITIVE);
+        Scale { low: low - room, high: high + room, logarithmic: false }
     }
 
     /// Returns the place of a value, from 0 to 1.
@@ -54,4 +70,17 @@ fn steps_between(low: f64, high: f64) -> Vec<f64> {
     let step = round_length((high - low) / 4.0);
     let first = (low / step).ceil();
     (0..12).map(|i| (first + f64::from(i)) * step).take_while(|x| *x <= high).collect()
+}
+
+/// Returns the colour of a place on a scale, from 0 to 1.
+pub(super) fn colour(part: f64) -> String {
+    let at = part.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
+    let i = (at.floor() as usize).min(COLOURS.len() - 2);
+    let rest = at - i as f64;
+    let mixed: Vec<String> = COLOURS[i]
+        .iter()
+        .zip(COLOURS[i + 1])
+        .map(|(low, high)| format!("{:02x}", (low + rest * (high - low)).round() as u8))
+        .collect();
+    format!("#{}", mixed.concat())
 }

@@ -35,7 +35,7 @@ fn every_bad_file_is_refused_in_the_expected_words() {
     files.sort();
     for path in files {
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
-        if name.ends_with(".expected") || GOOD.contains(&name.as_str()) {
+        if path.is_dir() || name.ends_with(".expected") || GOOD.contains(&name.as_str()) {
             continue;
         }
         count += 1;

@@ -44,4 +44,5 @@ mod studio_interface;
 #[cfg(feature = "studio")]
 mod studio_jobs;
 mod svg_in;
+mod sweep;
 mod text_in;

@@ -1,5 +1,5 @@
-//! `docs/problem-file.md` and `docs/linkage-file.md` are what `linkwright schema problem --markdown` and `linkwright schema
-//! linkage --markdown` print. To write them after a change of the keys:
+//! `docs/problem-file.md`, `docs/linkage-file.md` and `docs/sweep-file.md` are what `linkwright schema problem --markdown`
+//! and so on print. To write them after a change of the keys:
 //! `LINKWRIGHT_WRITE_DOCS=1 cargo test --test tool problem_file_document`.
 
 use crate::common::root;
@@ -8,9 +8,11 @@ use std::fs;
 
 #[test]
 fn the_references_of_the_files_are_made_from_their_schemas() {
-    for (kind, page_of) in
-        [(SchemaKind::Problem, "docs/problem-file.md"), (SchemaKind::Linkage, "docs/linkage-file.md")]
-    {
+    for (kind, page_of) in [
+        (SchemaKind::Problem, "docs/problem-file.md"),
+        (SchemaKind::Linkage, "docs/linkage-file.md"),
+        (SchemaKind::Sweep, "docs/sweep-file.md"),
+    ] {
         let place = root().join(page_of);
         let page = reference(kind);
         if std::env::var_os("LINKWRIGHT_WRITE_DOCS").is_some() {

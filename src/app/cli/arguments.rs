@@ -3,6 +3,7 @@
 use crate::files::schema::SchemaKind;
 use crate::mechanism::MAX_MAGNITUDE;
 use crate::mechanism::analysis::PositionMethod;
+use crate::record::sweep::MAX_JOBS;
 use crate::record::{Axis, MOST_MEMBERS};
 use crate::report::compare::SortKey;
 use crate::report::export::Format;
@@ -36,7 +37,7 @@ pub enum Command {
     Synth(Synth),
     /// Find the trade-off of a problem: linkages none of which is beaten in error, transmission angle and size together
     Front(Front),
-    /// Check problem, linkage and points files without running anything
+    /// Check problem, sweep, linkage and points files without running anything
     Check(Check),
     /// Write a commented problem file that runs as it is
     New(New),
@@ -58,6 +59,12 @@ pub enum Command {
     Snap(Snap),
     /// Run problems whose answer is known from many seeds, beside what was published
     Suite(Suite),
+    /// Run a problem with all combinations of values of its keys: plan, run, merge
+    Sweep {
+        /// The part.
+        #[command(subcommand)]
+        part: Sweep,
+    },
     /// Write a linkage as a file to build from: drawings in millimetres, DXF, STL, OpenSCAD, lists
     Export(Export),
     /// Open a local page: draw a path, drag its points, watch the best linkages follow
@@ -65,7 +72,7 @@ pub enum Command {
     Studio(Studio),
     /// Print the JSON Schema of a file, for editors, or a reference of its keys
     Schema {
-        /// problem, linkage or record
+        /// problem, linkage, record or sweep
         kind: SchemaKind,
         /// Print a reference page (Markdown) of its keys instead
         #[arg(long)]
@@ -173,7 +180,7 @@ fn axis(name: &str) -> Result<Axis, String> {
 /// Options of `check`.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// Problem or linkage files (TOML), points (CSV) or drawings (SVG)
+    /// Problem, sweep or linkage files (TOML), points (CSV) or drawings (SVG)
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
 }
@@ -401,6 +408,71 @@ pub struct Suite {
     /// Replace a file that is there even where linkwright did not write it, or where this command reads it
     #[arg(long)]
     pub force: bool,
+}
+
+/// The parts of `sweep`.
+#[derive(Debug, Subcommand)]
+pub enum Sweep {
+    /// Write the plan of a sweep: the problem, the values, the jobs in shards
+    #[command(after_help = "Exit codes: 0 planned, 2 bad input, 130 interrupted.")]
+    Plan(SweepPlan),
+    /// Run the shards of a plan that are missing; run again after an interruption, it goes on
+    #[command(
+        after_help = "Exit codes: 0 the shards are complete, 2 bad input, 70 a bug in a job (its row says so), \
+                            130 interrupted (complete shards stay)."
+    )]
+    Run(SweepRun),
+    /// Merge the shards into sweep.csv and sweep.jsonl, a row for each job, with a plot and a page
+    #[command(
+        after_help = "Exit codes: 0 a job found something acceptable, 1 none did, 2 bad input or shards are \
+                            missing, 70 a bug in a job."
+    )]
+    Merge(SweepMerge),
+}
+
+/// Options of `sweep plan`.
+#[derive(Debug, Args)]
+pub struct SweepPlan {
+    /// A sweep file (TOML): a problem and the keys of it that vary
+    pub sweep: PathBuf,
+    /// The folder of the sweep [default: results/NAME]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Jobs of a shard [default: as many as take about 5 s, judged by running a few]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedI64ValueParser::<u64>::new().range(1..=MAX_JOBS as i64))]
+    pub shard_size: Option<u64>,
+    /// Keep the whole record of every job in sweep.jsonl, not its row alone
+    #[arg(long)]
+    pub records: bool,
+    /// Threads for the jobs that are run to size the shards [default: all cores]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Replace another plan in the folder, and remove its shards
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Options of `sweep run`.
+#[derive(Debug, Args)]
+pub struct SweepRun {
+    /// The folder of a planned sweep
+    pub folder: PathBuf,
+    /// Run this shard alone, counted from 0 [default: all that are missing]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = RangedI64ValueParser::<u64>::new().range(0..))]
+    pub shard: Option<u64>,
+    /// Threads [default: all cores]; they change the time, never a digit
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Options of `sweep merge`.
+#[derive(Debug, Args)]
+pub struct SweepMerge {
+    /// The folder of a sweep whose shards are complete
+    pub folder: PathBuf,
 }
 
 /// Options of `studio`.

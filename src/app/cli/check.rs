@@ -2,10 +2,10 @@
 
 use super::arguments::Check;
 use super::{Ended, refuse_at, terminal};
-use crate::files::diagnostic::Diagnostic;
+use crate::files::diagnostic::{Diagnostic, counted, escaped};
 use crate::files::input_text;
 use crate::files::linkage_file;
-use crate::files::{points_file, problem_file};
+use crate::files::{points_file, problem_file, sweep_file};
 use crate::mechanism::Linkage;
 use ariadne::ReportKind;
 use std::path::Path;
@@ -53,6 +53,18 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
             }
         };
         return Ok((summary, Vec::new()));
+    }
+    if sweep_file::is_sweep(path) {
+        let file = sweep_file::load(path)?;
+        let keys: Vec<&str> = file.vary.iter().map(|varied| varied.key.as_str()).collect();
+        let summary = format!(
+            "sweep {}: {} of {} over {}",
+            file.name,
+            counted(usize::try_from(file.jobs).unwrap_or(usize::MAX), "job"),
+            file.problem.display(),
+            keys.join(", ")
+        );
+        return Ok((escaped(&summary), Vec::new()));
     }
     let file = problem_file::load(path, &[])?;
     let target = &file.spec.task.path;

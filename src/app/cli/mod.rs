@@ -25,6 +25,7 @@
 //! | [`snap`] | `snap`: lengths brought to stock sizes |
 //! | [`studio`] | `studio`: a local page that answers while a target is drawn |
 //! | [`suite`] | `suite`: problems whose answer is known, from many seeds |
+//! | [`sweep`] | `sweep`: many problems that are one problem with different values of some keys |
 //! | [`synth`] | `synth`: problems in, results out |
 //! | [`terminal`] | writing to the two streams, and how colourful the terminal is |
 //! | [`verify`] | `verify`: recompute a result |
@@ -50,6 +51,7 @@ mod snap;
 #[cfg(feature = "studio")]
 mod studio;
 mod suite;
+mod sweep;
 mod synth;
 mod terminal;
 mod verify;
@@ -153,6 +155,7 @@ fn dispatch(command: Command) -> Result<Ended, Ended> {
         Command::Build(options) => build::run(&options),
         Command::Snap(options) => snap::run(&options),
         Command::Suite(options) => suite::run(&options),
+        Command::Sweep { part } => sweep::run(&part),
         Command::Export(options) => export::run(&options),
         #[cfg(feature = "studio")]
         Command::Studio(options) => studio::run(&options),

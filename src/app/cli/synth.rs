@@ -10,6 +10,7 @@ use crate::app::job::folder::{FRONT_HTML, FolderError, OutputFile, Replace, chec
 use crate::app::job::run::Job;
 use crate::app::job::save;
 use crate::app::job::save::{Done, Listener, Options, Ran, SaveError, Written};
+use crate::app::job::workers::pools;
 use crate::files::generator::FileKind;
 use crate::record::{Reason, Record};
 use crate::report::batch_csv::batch_csv;
@@ -28,8 +29,6 @@ use std::sync::mpsc::{SendError, SyncSender, sync_channel};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
-/// From this many jobs a thread on, jobs run side by side, each on one thread: then no thread waits for another.
-const JOBS_A_THREAD: usize = 4;
 /// The most results of a batch that wait for the disk; then the searches wait too.
 const MOST_WAITING: usize = 64;
 /// The summary of a batch.
@@ -73,12 +72,9 @@ pub fn run(options: &Synth) -> Result<Ended, Ended> {
         // A place that is taken is reported before the searches, not after them.
         summary(options, &[], check_files).map_err(refuse)?;
     }
-    let threads = options.search.threads.map_or_else(rayon::current_num_threads, usize::from);
-    let side_by_side = threads > 1 && jobs >= JOBS_A_THREAD * threads;
-    let (workers, threads_each) = if side_by_side { (threads, 1) } else { (1, threads) };
-    let pools = (0..workers).map(|_| rayon::ThreadPoolBuilder::new().num_threads(threads_each).build());
-    let pools: Vec<_> =
-        pools.collect::<Result<_, _>>().map_err(|e| refuse(format!("no threads to search with: {e}")))?;
+    let pools = pools(jobs, options.search.threads.map(usize::from))
+        .map_err(|e| refuse(format!("no threads to search with: {e}")))?;
+    let side_by_side = pools.len() > 1;
     let batch = Batch {
         options,
         inputs: &inputs,

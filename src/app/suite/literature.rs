@@ -47,7 +47,7 @@ pub const POINTS: [(&str, &str); 6] = [
 /// # Errors
 /// The [`Diagnostic`] of a file that is not a valid problem file: a fault of this program.
 pub fn problems() -> Result<Vec<(&'static str, ProblemFile)>, Box<Diagnostic>> {
-    let read = |(name, text)| Ok((name, problem_file::parse_beside(name, text, &POINTS)?));
+    let read = |(name, text)| Ok((name, problem_file::parse_beside(name, text, &POINTS, &[])?));
     PROBLEMS.into_iter().map(read).collect()
 }
 

@@ -10,10 +10,12 @@ mod expect;
 mod overrides;
 mod path;
 mod raw;
+mod sweeping;
 mod target;
 
 pub use expect::{Expect, ExpectedCensus, Published};
 pub(crate) use raw::RawProblem;
+pub(crate) use sweeping::{Template, check_value};
 
 use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::input_text;
@@ -122,8 +124,8 @@ pub fn parse_own(
     parse_at(file_name, text, &Whereabouts { folder: Some(folder), anywhere: true, beside: &[] }, overrides)
 }
 
-/// Reads the problem of a text as [`parse`] does, with points files that are not on the disk: each with the name under
-/// which the problem asks for it.
+/// Reads the problem of a text as [`parse`] does, with points files and drawings that are not on the disk: each with the
+/// name under which the problem asks for it.
 ///
 /// # Errors
 /// As [`parse`].
@@ -131,8 +133,9 @@ pub fn parse_beside(
     file_name: &str,
     text: &str,
     beside: &[(&str, &str)],
+    overrides: &[(String, String)],
 ) -> Result<ProblemFile, Box<Diagnostic>> {
-    parse_at(file_name, text, &Whereabouts { folder: None, anywhere: false, beside }, &[])
+    parse_at(file_name, text, &Whereabouts { folder: None, anywhere: false, beside }, overrides)
 }
 
 /// Returns whether a key is among the overrides.
@@ -202,11 +205,16 @@ pub fn from_points_file(path: &Path, overrides: &[(String, String)]) -> Result<P
         let diagnostic = Diagnostic::new(shown, "", "the name of this file is not text");
         return Err(Box::new(diagnostic.with_help("rename the file")));
     };
-    let key = if is_drawing(path) { "svg" } else { "file" };
-    let value = toml::Value::String(file.to_owned());
-    let text = format!("format = {FORMAT}\n[task.path]\n{key} = {value}\n");
+    let text = text_about(file);
     let whereabouts = Whereabouts { folder: Some(folder_of(path)), anywhere: true, beside: &[] };
     parse_at(&shown, &text, &whereabouts, overrides)
+}
+
+/// Returns the text of a problem file whose target is a points file or a drawing and that states nothing else.
+fn text_about(target: &str) -> String {
+    let key = if is_drawing(Path::new(target)) { "svg" } else { "file" };
+    let value = toml::Value::String(target.to_owned());
+    format!("format = {FORMAT}\n[task.path]\n{key} = {value}\n")
 }
 
 fn folder_of(path: &Path) -> &Path {

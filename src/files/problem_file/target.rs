@@ -17,7 +17,7 @@ pub(super) struct Whereabouts<'a> {
     pub folder: Option<&'a Path>,
     /// Whether the file was named on the command line, so that it may lie anywhere.
     pub anywhere: bool,
-    /// Points files that are not on the disk, by the names under which a problem asks for them.
+    /// Points files and drawings that are not on the disk, by the names under which a problem asks for them.
     pub beside: &'a [(&'a str, &'a str)],
 }
 
@@ -80,8 +80,8 @@ impl Target {
             }
             (points.iter().map(|p| p.0).collect(), Source::File)
         } else if let Some(file) = &path.file {
-            let mut csv = match whereabouts.beside.iter().find(|(name, _)| name == file) {
-                Some((name, text)) => points_file::parse(name, text)?,
+            let mut csv = match whereabouts.text_of(file) {
+                Some(text) => points_file::parse(file, text)?,
                 None => points_file::load(&whereabouts.find(toml, "file", file)?)?,
             };
             (std::mem::take(&mut csv.points), Source::Csv(csv))
@@ -92,7 +92,10 @@ impl Target {
                 closed: path.closed,
                 unit,
             };
-            let mut svg = svg_file::load(&whereabouts.find(toml, "svg", file)?, &options)?;
+            let mut svg = match whereabouts.text_of(file) {
+                Some(text) => svg_file::parse(file, text, &options)?,
+                None => svg_file::load(&whereabouts.find(toml, "svg", file)?, &options)?,
+            };
             closed = svg.closed;
             (std::mem::take(&mut svg.points), Source::Svg(svg))
         } else {
@@ -125,9 +128,14 @@ impl Target {
 }
 
 impl Whereabouts<'_> {
+    /// Returns the text of a file that is not on the disk.
+    fn text_of(&self, file: &str) -> Option<&str> {
+        self.beside.iter().find(|(name, _)| *name == file).map(|(_, text)| *text)
+    }
+
     /// Returns the file that `task.path.key` names: inside the problem file's folder, links followed, or anywhere where it
     /// was named on the command line.
-    fn find(&self, toml: &TomlText<'_>, key: &str, file: &str) -> Checked<PathBuf> {
+    pub fn find(&self, toml: &TomlText<'_>, key: &str, file: &str) -> Checked<PathBuf> {
         let what = if key == "svg" { "drawing" } else { "points file" };
         let refuse = |message: String, help: &str| toml.refuse(&format!("task.path.{key}"), message, help);
         let Some(folder) = self.folder else {

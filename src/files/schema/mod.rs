@@ -7,6 +7,7 @@ pub use reference::reference;
 
 use crate::files::linkage_file::RawLinkageFile;
 use crate::files::problem_file::RawProblem;
+use crate::files::sweep_file::RawSweep;
 use crate::record::Record;
 
 /// A kind of file that has a schema.
@@ -18,18 +19,22 @@ pub enum SchemaKind {
     Linkage,
     /// Records: `record.json` of a result.
     Record,
+    /// Sweep files.
+    Sweep,
 }
 
 impl SchemaKind {
     /// Every kind.
-    pub const ALL: [SchemaKind; 3] = [SchemaKind::Problem, SchemaKind::Linkage, SchemaKind::Record];
+    pub const ALL: [SchemaKind; 4] =
+        [SchemaKind::Problem, SchemaKind::Linkage, SchemaKind::Record, SchemaKind::Sweep];
 
-    /// Returns the name of the kind: `problem`, `linkage` or `record`.
+    /// Returns the name of the kind: `problem`, `linkage`, `record` or `sweep`.
     pub fn name(self) -> &'static str {
         match self {
             SchemaKind::Problem => "problem",
             SchemaKind::Linkage => "linkage",
             SchemaKind::Record => "record",
+            SchemaKind::Sweep => "sweep",
         }
     }
 }
@@ -43,7 +48,7 @@ impl std::str::FromStr for SchemaKind {
 
 /// The error that a word does not name a kind of file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no schema of {0:?}: the kinds are problem, linkage and record")]
+#[error("there is no schema of {0:?}: the kinds are problem, linkage, record and sweep")]
 pub struct UnknownKind(pub String);
 
 /// Returns the JSON Schema (draft 2020-12) of a kind of file.
@@ -57,6 +62,7 @@ pub fn schema(kind: SchemaKind) -> serde_json::Value {
         SchemaKind::Problem => schemars::schema_for!(RawProblem),
         SchemaKind::Linkage => schemars::schema_for!(RawLinkageFile),
         SchemaKind::Record => schemars::schema_for!(Record),
+        SchemaKind::Sweep => schemars::schema_for!(RawSweep),
     }
     .to_value()
 }

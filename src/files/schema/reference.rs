@@ -87,6 +87,9 @@ file may be replaced by a command that writes a linkage file under the same name
 command's own input, it is replaced with `--force` alone.
 "#;
 
+/// The beginning of the page of sweep files: an example, and the files of a sweep's folder.
+const SWEEP_FORMATS: &str = include_str!("sweep_formats.md");
+
 /// Returns the reference of a kind of file as a page of Markdown: every table with its keys, their allowed values,
 /// defaults and meanings.
 ///
@@ -103,6 +106,7 @@ pub fn reference(kind: SchemaKind) -> String {
     let (title, rules) = match kind {
         SchemaKind::Problem => ("problem file", read.as_str()),
         SchemaKind::Linkage => ("linkage file", read.as_str()),
+        SchemaKind::Sweep => ("sweep file", read.as_str()),
         SchemaKind::Record => {
             ("record (record.json)", "All numbers are finite; keys that do not apply are absent.")
         }
@@ -113,7 +117,11 @@ pub fn reference(kind: SchemaKind) -> String {
         "# The {title}\n\n\
          This page is made from the program's own schema: `linkwright schema {name} --markdown` prints it. {rules} \
          Angles are in degrees, lengths in the file's unit.\n{examples}",
-        examples = if kind == SchemaKind::Linkage { LINKAGE_EXAMPLES } else { "" },
+        examples = match kind {
+            SchemaKind::Linkage => LINKAGE_EXAMPLES,
+            SchemaKind::Sweep => SWEEP_FORMATS,
+            SchemaKind::Problem | SchemaKind::Record => "",
+        },
     );
     page.table("", &schema);
     page.text

@@ -66,7 +66,7 @@ pub(super) fn visible(markup: Markup) -> String {
 }
 
 /// Returns a section with a heading, as a card.
-pub(super) fn section(id: &str, title: &str, inside: Markup) -> Markup {
+pub(in crate::report) fn section(id: &str, title: &str, inside: Markup) -> Markup {
     html! {
         section.card id=(id) aria-labelledby={ (id) "-title" } {
             h2 id={ (id) "-title" } { (title) }
@@ -76,7 +76,7 @@ pub(super) fn section(id: &str, title: &str, inside: Markup) -> Markup {
 }
 
 /// Returns a paragraph.
-pub(super) fn paragraph(class: &str, text: &str) -> Markup {
+pub(in crate::report) fn paragraph(class: &str, text: &str) -> Markup {
     html! { p class=[Some(class).filter(|class| !class.is_empty())] { (text) } }
 }
 

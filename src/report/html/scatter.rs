@@ -4,7 +4,7 @@ use crate::record::{Axis, Front, Record};
 use crate::report::canvas::{Anchor, Area, Canvas, Spot, Vec2, bold, filled, font, outline, palette, px};
 use crate::report::front::in_words;
 use crate::report::labels::Beside;
-use crate::report::scale::{LOGARITHMIC, Scale};
+use crate::report::scale::{LOGARITHMIC, Scale, colour};
 use crate::report::text::{brief, capitalised, xml};
 use crate::report::words;
 
@@ -19,11 +19,6 @@ const RADIUS: f64 = 7.5;
 const KNEE_RADIUS: f64 = 12.5;
 /// Errors below this part of the largest one are drawn at the lower end.
 const LEAST_ERROR: f64 = 1e-9;
-
-/// The colours of the third axis, from its least to its greatest figure, of equal steps to the eye and to colour-blind
-/// eyes (viridis, Smith and van der Walt 2015, without its lightest end).
-const COLOURS: [[f64; 3]; 5] =
-    [[68.0, 1.0, 84.0], [59.0, 82.0, 139.0], [33.0, 145.0, 140.0], [94.0, 201.0, 98.0], [216.0, 226.0, 25.0]];
 
 /// Returns the plot as an SVG document. Of four axes the last is left to the table.
 pub(super) fn scatter_svg(record: &Record, front: &Front) -> String {
@@ -159,19 +154,6 @@ fn named((axis, scale, _): &Scaled, unit: &str) -> String {
 fn number(axis: Axis, value: f64) -> String {
     let degrees = if axis == Axis::Transmission { "°" } else { "" };
     format!("{}{degrees}", brief(value, 3))
-}
-
-/// Returns the colour of a place on the third axis, from 0 to 1.
-fn colour(part: f64) -> String {
-    let at = part.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
-    let i = (at.floor() as usize).min(COLOURS.len() - 2);
-    let rest = at - i as f64;
-    let mixed: Vec<String> = COLOURS[i]
-        .iter()
-        .zip(COLOURS[i + 1])
-        .map(|(low, high)| format!("{:02x}", (low + rest * (high - low)).round() as u8))
-        .collect();
-    format!("#{}", mixed.concat())
 }
 
 /// Draws the bar of colours with the numbers of the third axis.

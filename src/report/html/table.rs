@@ -30,7 +30,7 @@ impl Cell {
     }
 
     /// Returns a cell with a number with this many significant digits.
-    pub(super) fn figure(value: f64, digits: usize) -> Self {
+    pub(in crate::report) fn figure(value: f64, digits: usize) -> Self {
         Cell::number(value, minus(&significant(value, digits)))
     }
 
@@ -45,7 +45,7 @@ impl Cell {
     }
 
     /// Returns a cell with a verdict in words.
-    pub(super) fn verdict(text: impl Into<String>, good: bool) -> Self {
+    pub(in crate::report) fn verdict(text: impl Into<String>, good: bool) -> Self {
         Cell {
             text: text.into(),
             value: None,
@@ -91,7 +91,7 @@ pub(super) fn minus(text: &str) -> String {
 
 /// Returns a table that may be wider than the page, in a region that scrolls. A heading says whether it is that of
 /// numbers, which are right-aligned.
-pub(super) fn scrolling<T: Render>(
+pub(in crate::report) fn scrolling<T: Render>(
     name: &str,
     class: &str,
     columns: &[(&str, bool)],

@@ -15,7 +15,7 @@ mod replacement;
 mod tests;
 mod together;
 
-pub use output_file::{OutputFile, Replace, check_files, write_files};
+pub use output_file::{OutputFile, Replace, Replacement, check_files, write_files};
 pub use together::put_together;
 
 use lock::Lock;
@@ -81,6 +81,16 @@ pub enum FolderError {
     /// Two files were to be written to one path.
     #[error("{0} is named twice: each file needs a place of its own")]
     NamedTwice(String),
+    /// The folder of a sweep contains something else.
+    #[error(
+        "{path} holds {foreign}, which is no part of a sweep; give another folder with --out or move it away"
+    )]
+    NotASweep {
+        /// The path of the folder.
+        path: String,
+        /// The name of the foreign entry.
+        foreign: String,
+    },
     /// Another run uses the folder.
     #[error("{0} is in use by another run; wait for it to end or give another folder with --out")]
     Locked(String),
@@ -184,7 +194,7 @@ fn is_ours(name: &str) -> bool {
 
 /// Returns whether a name is that of a half-written file ([`tempfile`] adds six letters or digits) or of a folder of a
 /// replacement that was interrupted.
-fn is_temporary(name: &str) -> bool {
+pub(crate) fn is_temporary(name: &str) -> bool {
     let random = |rest: &str| rest.len() == 6 && rest.bytes().all(|b| b.is_ascii_alphanumeric());
     replacement::is_staging(name) || name.strip_prefix(TEMPORARY).is_some_and(random)
 }

@@ -4,7 +4,7 @@ use super::{FolderError, TEMPORARY, about, disk};
 use crate::files::generator;
 use crate::files::generator::FileKind;
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
 use tempfile::NamedTempFile;
 
@@ -158,6 +158,46 @@ fn write(file: &OutputFile<'_>, there: There, replace: Replace<'_>) -> io::Resul
             Err(io::Error::from(io::ErrorKind::PermissionDenied))
         }
         There::File => over(&file.path.canonicalize()?, file.bytes),
+    }
+}
+
+/// A file that takes its place when it is complete: a reader sees the old one or the whole new one.
+#[derive(Debug)]
+pub struct Replacement<'p> {
+    path: &'p Path,
+    file: BufWriter<NamedTempFile>,
+}
+
+impl<'p> Replacement<'p> {
+    /// Begins a file for a place in a folder of linkwright's.
+    ///
+    /// # Errors
+    /// [`FolderError::Io`] if no file can be created beside it.
+    pub fn begin(path: &'p Path) -> Result<Self, FolderError> {
+        let file = temporary(path, &[]).map_err(about(path))?;
+        Ok(Replacement { path, file: BufWriter::new(file) })
+    }
+
+    /// Appends bytes.
+    ///
+    /// # Errors
+    /// [`FolderError::Io`].
+    pub fn write(&mut self, bytes: &[u8]) -> Result<(), FolderError> {
+        self.file.write_all(bytes).map_err(about(self.path))
+    }
+
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    /// [`FolderError::Io`]; the old file is kept.
+    pub fn finish(self) -> Result<(), FolderError> {
+        let path = self.path;
+        let done = || {
+            let file = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
+            disk::sync(file.as_file())?;
+            file.persist(path).map(drop).map_err(|e| e.error)
+        };
+        done().map_err(about(path))
     }
 }
 
