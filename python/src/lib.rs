@@ -65,11 +65,11 @@ fn _linkwright(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(timing::_time_synth, module)?)?;
     module.add_function(wrap_pyfunction!(doors::_panic, module)?)?;
     module.add_function(wrap_pyfunction!(doors::_panic_here, module)?)?;
-    //    module.add_function(wrap_pyfunction!(sweeping::sweep_plan, module)?)?;
-    //    module.add_function(wrap_pyfunction!(sweeping::sweep_open, module)?)?;
-    //    module.add_function(wrap_pyfunction!(sweeping::sweep_missing, module)?)?;
-    //    module.add_function(wrap_pyfunction!(sweeping::sweep_run, module)?)?;
-    //    module.add_function(wrap_pyfunction!(sweeping::sweep_merge, module)?)?;
+    module.add_function(wrap_pyfunction!(sweeping::sweep_plan, module)?)?;
+    module.add_function(wrap_pyfunction!(sweeping::sweep_open, module)?)?;
+    module.add_function(wrap_pyfunction!(sweeping::sweep_missing, module)?)?;
+    module.add_function(wrap_pyfunction!(sweeping::sweep_run, module)?)?;
+    module.add_function(wrap_pyfunction!(sweeping::sweep_merge, module)?)?;
     #[cfg(feature = "command")]
     module.add_function(wrap_pyfunction!(doors::main, module)?)?;
     Ok(())
