@@ -58,7 +58,7 @@ fn merged(folder: &Path) -> [String; 4] {
     ["sweep.csv", "sweep.jsonl", "sweep.svg", "sweep.html"].map(|name| read(folder.join(name)))
 }
 
-const NEVER: AtomicBool = AtomicBool::new(false);
+static NEVER: AtomicBool = AtomicBool::new(false);
 
 fn how(threads: usize, cancel: &AtomicBool) -> How<'_> {
     How { threads: Some(threads), cancel, observer: &|_, _| {} }
@@ -308,25 +308,26 @@ fn an_equal_plan_keeps_its_shards_and_a_changed_one_is_refused() {
 
 #[test]
 fn contradictory_values_are_rows_and_words_and_lists_can_vary() {
-    let sweep = "format = 1\nproblem = \"small.toml\"\n[vary]\ndesign.a = [[1, 2], [6, 9]]\n\
+    let sweep = "format = 1\nproblem = \"small.toml\"\n[vary]\ndesign.b = [[1, 3], [6, 9]]\n\
                  [vary.require]\ntype = [\"crank-rocker\", \"double-rocker\"]\n\
-                 [vary.design.b]\nfrom = 2.5\nto = 3.5\nsteps = 2\n";
+                 [vary.design.a]\nfrom = 2.5\nto = 3.5\nsteps = 2\n";
     let folder = folder(sweep);
     let at = folder.path();
-    fs::write(at.join("small.toml"), PROBLEM.to_owned() + "[require]\nlongest_max = 5\n").expect("written");
+    fs::write(at.join("small.toml"), PROBLEM.to_owned() + "[design]\nd = [1, 2]\ne = [1, 2]\n")
+        .expect("written");
     succeeds(at, &["sweep", "plan", "it.toml", "--out", "out"]);
     succeeds(at, &["sweep", "run", "out"]);
     let (_, told, _) = linkwright(at, &["sweep", "merge", "out"]);
     assert!(told.contains("4 refused as their values contradict each other"), "{told}");
     let table = read(at.join("out/sweep.csv"));
-    assert!(table.starts_with("job,design.a,require.type,design.b,status,"), "{table}");
+    assert!(table.starts_with("job,design.b,require.type,design.a,status,"), "{table}");
     let refused: Vec<&str> = table.lines().filter(|line| line.contains(",refused,")).collect();
     assert_eq!(refused.len(), 4, "{table}");
     for line in refused {
-        assert!(line.contains("\"[6, 9]\"") && line.contains("longest_max"), "{line}");
+        assert!(line.contains("\"[6, 9]\"") && line.contains("impossible triangle"), "{line}");
     }
     let page = read(at.join("out/sweep.html"));
-    assert!(page.contains("What was refused") && page.contains("longest_max"));
+    assert!(page.contains("What was refused") && page.contains("impossible triangle"));
 }
 
 #[test]
