@@ -45,7 +45,7 @@
 //! | `synthesis` | the search: its [`plan`](internals::synthesis::plan), the canonical frame of free timing, starts, the [`atlas`](internals::synthesis::atlas) of coupler curves, searches for prescribed (by [`variable_projection`](internals::synthesis::variable_projection)) and [`free`](internals::synthesis::free) timing, population searches, the [`front`](internals::synthesis::front) and the [`picks`](internals::synthesis::picks) by fits under tightened limits, [`conflicts`](internals::synthesis::conflicts) of requirements, fitting while a target is dragged, rounding lengths to stock sizes; its limits and its cancellation | numbers, mechanism, task, record, judge |
 //! | `files` | file formats: problem, points, linkage and drawing files are read, with errors that point at their place; schemas, templates | numbers, mechanism, task, record |
 //! | `report` | what a person sees, pure functions of records and analyses: text, tables, drawings, the [page](internals::report::html), the [comparison](internals::report::compare), and files to build from in [`export`](internals::report::export) (DXF, STL, ..) | mechanism, task, record, judge, synthesis, files |
-//! | `app` | entry points: a job in, a record out ([`run`](internals::app::job::run)), folders of results and checkpoints, the [`suite`](internals::app::suite), the command line in `cli/` (Ctrl-C, exit codes), the local page in `studio/` | everything |
+//! | `app` | entry points: a job in, a record out ([`run`](internals::app::job::run)), folders of results and checkpoints, the [`suite`](internals::app::suite), [sweeps](internals::app::sweep), the command line in `cli/` (Ctrl-C, exit codes), the local page in `studio/` | everything |
 //!
 //! The public interface is the names below. `internals` is for this repository's own tests and tools; versions say nothing
 //! about it.
@@ -99,6 +99,14 @@ pub mod results {
         CurveErrorRecord, ErrorRecord, ExactLinkage, ExactRecord, Figure, Reason, Requirement, Termination,
         Warning, WarningKind,
     };
+}
+
+/// Many problems that are one problem with different values of some keys: a plan, shards, merged rows.
+pub mod sweep {
+    pub use crate::app::sweep::{
+        How, Merged, PlanOptions, Ran, ShardDone, SweepError, merge, open, plan, run_missing, run_shard,
+    };
+    pub use crate::record::sweep::{Plan, Row, Values, Varied};
 }
 
 /// Positions, velocities, accelerations and mobility of a given linkage.

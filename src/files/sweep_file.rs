@@ -180,6 +180,9 @@ fn varied(toml: &TomlText<'_>, table: &toml::Value) -> Checked<Vec<(Varied, Vec<
 /// The two forms of values.
 const FORMS: &str = "write a list such as [1, 2, 3], or { from = 20, to = 50, steps = 7 }";
 
+/// The remedy for a range with a value that the key does not take.
+const RANGE_REMEDY: &str = "choose the ends and the steps so that the key takes every value, or write a list";
+
 /// Returns whether a table is a range and not a table of the problem.
 fn is_range(table: &toml::Table) -> bool {
     ["from", "to", "steps"].iter().any(|key| table.contains_key(*key))
@@ -292,6 +295,8 @@ fn check(
             };
             let diagnostic =
                 if of_key { toml.at_key_path(path, message) } else { toml.at_path(&place, message) };
+            let of_range = matches!(values, Values::Range(_)) && !of_key;
+            let help = help.or_else(|| of_range.then(|| RANGE_REMEDY.to_owned()));
             return Err(Box::new(match help {
                 Some(help) => diagnostic.with_help(help),
                 None => diagnostic,

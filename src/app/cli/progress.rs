@@ -3,7 +3,7 @@
 use super::terminal::tell;
 use crate::app::suite::Step;
 use crate::judge::certificate;
-use crate::report::text::{at_most, clean, grouped, percent_up};
+use crate::report::text::{at_most, brief, clean, grouped, percent_up};
 use crate::synthesis::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
@@ -110,10 +110,7 @@ impl Shown {
     /// One more job of a batch of `total` is done.
     pub fn one_more(&self, total: u64) {
         let done = 1 + self.done.fetch_add(1, Ordering::Relaxed);
-        self.show([done, total], String::new, || {
-            let left = self.start.elapsed().as_secs_f64() * (total - done) as f64 / done as f64;
-            format!("{done} of {total} jobs done, about {} left", duration(left))
-        });
+        self.show([done, total], String::new, || of_jobs(done, total, self.start.elapsed()));
     }
 
     /// Takes a word from a certificate.
@@ -143,6 +140,13 @@ fn duration(seconds: f64) -> String {
         s if s < 6000.0 => format!("{:.0} min", s / 60.0),
         s => format!("{:.1} h", s / 3600.0),
     }
+}
+
+/// Describes the state of a batch in a line, with its rate and the time left.
+fn of_jobs(done: u64, total: u64, elapsed: Duration) -> String {
+    let rate = done as f64 / elapsed.as_secs_f64();
+    let left = duration(total.saturating_sub(done) as f64 / rate);
+    format!("{} of {} jobs done, {}/s, about {left} left", grouped(done), grouped(total), brief(rate, 3))
 }
 
 /// Describes the state of a proof in a line.
@@ -233,6 +237,12 @@ mod tests {
         assert!(text.ends_with("evaluations, 0/s, nothing acceptable yet"), "{text}");
         let text = after(&at(1_000_001, None, false), 0, 1);
         assert!(text.contains("at most 0 s left"), "{text}");
+    }
+
+    #[test]
+    fn a_batch_says_its_rate_and_the_time_left() {
+        let text = of_jobs(1500, 6000, Duration::from_secs(40));
+        assert_eq!(text, "1,500 of 6,000 jobs done, 37.5/s, about 2 min left");
     }
 
     #[test]

@@ -87,7 +87,7 @@ file may be replaced by a command that writes a linkage file under the same name
 command's own input, it is replaced with `--force` alone.
 "#;
 
-/// The beginning of the page of sweep files: an example, and the files of a sweep's folder.
+/// The text around the keys of sweep files: an example and the rules, then the files of a sweep's folder.
 const SWEEP_FORMATS: &str = include_str!("sweep_formats.md");
 
 /// Returns the reference of a kind of file as a page of Markdown: every table with its keys, their allowed values,
@@ -103,6 +103,8 @@ pub fn reference(kind: SchemaKind) -> String {
     let name = kind.name();
     let read =
         format!("Unknown keys are refused. All numbers are finite and below {MAX_MAGNITUDE:e} in magnitude.");
+    // What comes before the table of keys, and what comes after it.
+    let sweep = SWEEP_FORMATS.split_at(SWEEP_FORMATS.find("\n## ").unwrap_or(SWEEP_FORMATS.len()));
     let (title, rules) = match kind {
         SchemaKind::Problem => ("problem file", read.as_str()),
         SchemaKind::Linkage => ("linkage file", read.as_str()),
@@ -119,11 +121,14 @@ pub fn reference(kind: SchemaKind) -> String {
          Angles are in degrees, lengths in the file's unit.\n{examples}",
         examples = match kind {
             SchemaKind::Linkage => LINKAGE_EXAMPLES,
-            SchemaKind::Sweep => SWEEP_FORMATS,
+            SchemaKind::Sweep => sweep.0,
             SchemaKind::Problem | SchemaKind::Record => "",
         },
     );
     page.table("", &schema);
+    if kind == SchemaKind::Sweep {
+        page.text.push_str(sweep.1);
+    }
     page.text
 }
 

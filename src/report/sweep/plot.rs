@@ -187,7 +187,8 @@ fn map(
             width: area.width - 2.0 * inset,
             height: area.height - 2.0 * inset,
         };
-        canvas.area(inside, &format!(r#"fill="{}""#, colour(scale.0.part(rms.max(scale.1)))));
+        let fill = colour(scale.0.part(rms.max(scale.1)));
+        canvas.area(inside, &format!(r#"fill="{fill}" shape-rendering="crispEdges""#));
     }
     values_across(canvas, frame, across, |cell| frame.x + width * (cell as f64 + 0.5));
     let mut free = f64::INFINITY;

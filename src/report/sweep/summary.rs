@@ -3,6 +3,7 @@
 
 use super::table::value;
 use crate::record::sweep::{Plan, Row, Status, Values};
+use crate::report::text::brief;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -43,9 +44,12 @@ impl GridAxis {
         (rising || falling).then_some(numbers)
     }
 
-    /// Returns the value of a cell as text.
+    /// Returns the value of a cell as text, a number with five digits at most.
     pub fn label(&self, cell: usize) -> String {
-        self.values.get(cell).map_or(String::new(), value)
+        self.values.get(cell).map_or(String::new(), |given| match (given.as_i64(), given.as_f64()) {
+            (None, Some(number)) => brief(number, 5),
+            _ => value(given),
+        })
     }
 }
 
