@@ -11,6 +11,43 @@ _Path = Union[str, os.PathLike[str]]
 _Array = NDArray[np.float64]
 _Progress = Callable[[dict[str, Any]], object]
 
+__all__ = [
+    "Chain",
+    "FourBar",
+    "InternalError",
+    "Positions",
+    "Problem",
+    "ProblemError",
+    "Rates",
+    "Run",
+    "__version__",
+    "_panic",
+    "_panic_here",
+    "_time_positions",
+    "_time_synth",
+    "analyze",
+    "build",
+    "certify",
+    "compare",
+    "export",
+    "export_formats",
+    "load",
+    "main",
+    "open",
+    "parse_linkage",
+    "parse_run",
+    "schema",
+    "snap",
+    "suite",
+    "sweep_merge",
+    "sweep_missing",
+    "sweep_open",
+    "sweep_plan",
+    "sweep_run",
+    "synth",
+    "verify",
+]
+
 __version__: str
 
 class ProblemError(ValueError):
@@ -258,8 +295,6 @@ def load(path: _Path) -> FourBar | Chain:
 
     Raises ProblemError: the file is refused; the text names the line, the fault and the remedy.
     """
-
-__all__: list[str]
 
 def synth(
     problem: Problem,

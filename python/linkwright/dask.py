@@ -180,17 +180,18 @@ def _outcome(future: Any) -> BaseException | None:
     if future.status != "error":
         return _Lost()
     error: BaseException = future.exception(timeout=10)
-    if isinstance(error, KilledWorker):
-        return error
-    raise error
+    if not isinstance(error, KilledWorker):
+        raise error
+    died: BaseException = error
+    return died
 
 
 def _room(client: Client) -> int:
     try:
-        threads = sum(client.nthreads().values())
+        threads = int(sum(client.nthreads().values()))
     except (OSError, TimeoutError):
         threads = 1
-    return max(_AHEAD * threads, _AHEAD)
+    return _AHEAD * max(threads, 1)
 
 
 def _let_go(client: Client, futures: list[Any]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -10,28 +9,46 @@ import pytest
 from conftest import ARC, ROOT, call
 
 import linkwright as lw
+import linkwright.sweep
 
 BAD = sorted((ROOT / "tests" / "bad").rglob("*.toml"))
+SWEEPS = [file for file in BAD if file.parent.name == "sweeps"]
 
 
-@pytest.mark.parametrize("file", BAD, ids=lambda file: file.stem)
-def test_every_bad_file_is_refused_with_the_text_of_the_command(file: Path, program: list[str]) -> None:
-    said = call([*program, "check", file.name], cwd=file.parent)
-    here = os.getcwd()
-    os.chdir(file.parent)
-    try:
-        text = file.read_text(errors="replace")
-        linkage = any(line.strip().startswith(("[linkage]", "[vector_loop]", "[chain")) for line in text.splitlines())
-        read = lw.load if linkage else lw.load_problem
-        if said.returncode == 0:
-            read(file.name)
-            return
-        with pytest.raises(lw.ProblemError) as refused:
-            read(file.name)
-    finally:
-        os.chdir(here)
+def read(name: str) -> object:
+    """Reads a file of the folder, as what it is."""
+    lines = Path(name).read_text(errors="replace").splitlines()
+    linkage = any(line.strip().startswith(("[linkage]", "[vector_loop]", "[chain")) for line in lines)
+    return lw.load(name) if linkage else lw.load_problem(name)
+
+
+def compared(code: int, said: str, read: object) -> None:
+    """Compares what the command said with what is raised."""
+    if code == 0:
+        read()  # type: ignore[operator]
+        return
+    with pytest.raises(lw.ProblemError) as refused:
+        read()  # type: ignore[operator]
     # Warnings come before the error.
-    assert said.stderr.endswith(f"error: {refused.value}\n")
+    assert said.endswith(f"error: {refused.value}\n")
+
+
+@pytest.mark.parametrize("file", [f for f in BAD if f not in SWEEPS], ids=lambda file: file.stem)
+def test_every_bad_file_is_refused_with_the_text_of_the_command(
+    file: Path, program: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(file.parent)
+    said = call([*program, "check", file.name])
+    compared(said.returncode, said.stderr, lambda: read(file.name))
+
+
+@pytest.mark.parametrize("file", SWEEPS, ids=lambda file: file.stem)
+def test_every_bad_sweep_is_refused_with_the_text_of_the_command(
+    file: Path, program: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(file.parent)
+    said = call([*program, "sweep", "plan", file.name, "--out", str(tmp_path / "theirs"), "--shard-size", "1"])
+    compared(said.returncode, said.stderr, lambda: lw.sweep.plan(file.name, tmp_path / "ours", shard_size=1))
 
 
 def refusal(call: object, *given: object, **options: object) -> str:

@@ -41,7 +41,7 @@ def planned(folder: Path, jobs: int, size: int) -> lw.sweep.Plan:
     return lw.sweep.plan(folder / "sweep.toml", folder / "out", shard_size=size)
 
 
-class Starts(distributed.WorkerPlugin):  # type: ignore[misc]
+class Starts(distributed.WorkerPlugin):  # type: ignore[misc, name-defined]
     """Notes each task that begins in a file."""
 
     def __init__(self, file: str) -> None:
@@ -100,7 +100,7 @@ def test_workers_that_are_killed_cost_a_start_each(
     with distributed.Client(cluster) as client:
         client.register_plugin(Starts(str(starts)))
         ended = threading.Event()
-        killed = []
+        killed: list[int] = []
 
         def kill() -> None:
             # One worker after the other, by the id that it says it has.

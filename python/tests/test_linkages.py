@@ -151,8 +151,8 @@ def test_answers_are_arrays_of_ones_own() -> None:
     one, other = LINKAGE.positions(ANGLES), LINKAGE.positions(ANGLES)
     one.P[:] = 0
     assert not np.array_equal(one.P, other.P)
-    assert one.P.flags.writeable
-    assert one.P.flags.c_contiguous
+    assert one.P.flags["W"]
+    assert one.P.flags["C"]
 
 
 def test_a_linkage_tells_its_parameters_and_is_read_back(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ use linkwright::internals::mechanism::{
     VectorLoop, cross,
 };
 use linkwright::internals::numbers::arithmetic::lane::{F64x8, LANES};
+use linkwright::internals::numbers::arithmetic::sine::sin_cos;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
 
@@ -114,7 +115,7 @@ proptest! {
         l in any_linkage(),
         angles in prop::collection::vec(-7.0..7.0f64, 24),
     ) {
-        let (sin, cos): (Vec<f64>, Vec<f64>) = angles.iter().map(|phi| phi.sin_cos()).unzip();
+        let (sin, cos): (Vec<f64>, Vec<f64>) = angles.iter().map(|phi| sin_cos(*phi)).unzip();
         let kernel = Kernel::new(&l);
         let mut points = CouplerPoints::with_room(angles.len());
         points.fill(&kernel, &cos, &sin);

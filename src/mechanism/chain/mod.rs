@@ -34,6 +34,7 @@ pub use motion::Motion;
 
 use super::four_bar::position::{Meeting, meeting};
 use super::{AssemblyMode, Complex, FLAT_TOLERANCE, cross, dot, turned};
+use crate::numbers::arithmetic::sine::sin_cos;
 
 /// Distance within which two points coincide, in roundings of the largest coordinate or length.
 const COINCIDENT_ROUNDINGS: f64 = 16.0;
@@ -295,7 +296,7 @@ impl Chain {
     /// When `pose` is of a chain with another number of points.
     #[inline]
     pub fn position(&self, crank_angle: f64, pose: &mut Pose) -> Outcome {
-        let (sin, cos) = crank_angle.sin_cos();
+        let (sin, cos) = sin_cos(crank_angle);
         self.position_toward(Complex::new(cos, sin), pose)
     }
 
