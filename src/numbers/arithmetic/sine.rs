@@ -57,7 +57,6 @@ pub fn sin_cos(angle: f64) -> (f64, f64) {
 }
 
 /// Returns the sines and the cosines of a block of angles, with the digits of [`sin_cos`].
-#[expect(clippy::needless_range_loop, reason = "indexed loops over arrays become vector instructions")]
 #[inline(always)]
 pub fn sin_cos_block(angles: &[f64; LANES]) -> ([f64; LANES], [f64; LANES]) {
     let (mut sin, mut cos) = ([0.0; LANES], [0.0; LANES]);
