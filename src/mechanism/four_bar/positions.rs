@@ -69,13 +69,13 @@ fn block(kernel: &Kernel, angles: &[f64; LANES], places: [&mut [[f64; 2]; LANES]
     let at = kernel.at(F64x8(cos), F64x8(sin));
     let [px, py] = at.coupler_point;
     let zero = F64x8::splat(0.0);
-    // x - x is NaN for infinities and NaN, zero for all other numbers.
-    let finite = (px - px) + (py - py);
+    // 0 x is NaN for infinities and NaN, zero for all other numbers.
+    let finite = zero * px + zero * py;
     let lost = at.gap.at_least(zero, finite, F64x8::splat(f64::NAN));
     for (place, [x, y]) in places.into_iter().zip([at.crank_pin, at.follower_pin, at.coupler_point]) {
         let (x, y) = (x + lost, y + lost);
-        for i in 0..LANES {
-            place[i] = [x.0[i], y.0[i]];
+        for (i, at) in place.iter_mut().enumerate() {
+            *at = [x.0[i], y.0[i]];
         }
     }
 }
