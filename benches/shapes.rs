@@ -15,15 +15,12 @@
 
 #![expect(clippy::print_stdout, reason = "the table is what this program is for")]
 
-use ladder::{Rung, size};
 use linkwright::internals::app::job::run::{Context, Job, run};
 use linkwright::internals::files::problem_file::load_any;
+use linkwright::internals::mechanism::LinkageType;
 use linkwright::internals::record::Candidate;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-
-#[path = "../tests/common/ladder.rs"]
-mod ladder;
 
 /// The shapes, whether they are closed, and the largest median error that is accepted of both kinds of points: 1 % above
 /// what every seed came to on 2026-11-24.
@@ -35,7 +32,8 @@ const SHAPES: [(&str, bool, [f64; 2]); 6] = [
     ("S", false, [0.0809, 0.0826]),
     ("figure-8", true, [0.1459, 0.1501]),
 ];
-/// The greatest length of a link, in diagonals, and the greatest ratio of two.
+/// The least transmission angle, the greatest length of a link in diagonals, and the greatest ratio of two.
+const TRANSMISSION_DEG: f64 = 30.0;
 const LONGEST: f64 = 3.0;
 const LINK_RATIO: f64 = 100.0;
 
@@ -54,14 +52,25 @@ fn error(file: &Path, closed: bool, evenly: bool, (seed, time_limit_s): (u64, f6
     }
     let set: Vec<_> = set.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
     let mut problem = load_any(file, &set).unwrap_or_else(|why| panic!("{}: {why}", file.display()));
-    Rung::Transmission.asks(&mut problem.spec);
-    problem.spec.require.longest_max = Some(LONGEST * size(&problem.spec));
-    problem.spec.require.link_ratio_max = LINK_RATIO;
     let points = problem.spec.task.path.points.clone();
+    let require = &mut problem.spec.require;
+    require.types = vec![LinkageType::CrankRocker, LinkageType::DoubleCrank];
+    require.transmission_deg_min = Some(TRANSMISSION_DEG);
+    require.longest_max = Some(LONGEST * diagonal(&points));
+    require.link_ratio_max = LINK_RATIO;
     let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
     let record = run(&Job::from(problem), &context).expect("it runs").record;
     let accepted = record.candidates.first().filter(|c: &&Candidate| c.accepted);
     accepted.map_or(f64::INFINITY, |c| c.error.rms / radius(&points))
+}
+
+/// Returns the diagonal of the points' bounding box.
+fn diagonal(points: &[[f64; 2]]) -> f64 {
+    let range = |k: usize| {
+        let values = points.iter().map(|p| p[k]);
+        values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
+    };
+    range(0).hypot(range(1))
 }
 
 /// Returns the root mean square of the points' distances from their centroid.

@@ -1,6 +1,6 @@
 //! RESULT on the command line: a folder, its record.json, either with `:2` for one candidate (or `:buildable`,
 //! `:smallest`, `:best-transmission`, `:front-2`), or a linkage file. Every command that takes one reads it here, with
-//! [`inputs`](crate::app::inputs).
+//! [`inputs`].
 
 use super::{Ended, refuse, refuse_at, refuse_path, terminal};
 use crate::app::inputs;
