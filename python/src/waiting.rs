@@ -16,7 +16,7 @@ use std::time::Duration;
 /// The time between two looks for a signal.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
-/// What the work and the waiting thread tell each other.
+/// The messages between the work and the waiting thread.
 #[derive(Debug, Default)]
 pub struct Talk {
     /// Set when the work should end with its best so far.

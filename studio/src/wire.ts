@@ -668,7 +668,7 @@ export interface Compared {
    */
   front_of: [string, string, string];
   /**
-   * What could not be compared.
+   * Results that could not be compared.
    */
   left_out: LeftOut[];
   /**

@@ -50,7 +50,7 @@ pub enum SweepError {
         "{0} holds another plan, and shards of it; give another folder with --out, or --force to remove them"
     )]
     Planned(String),
-    /// There is no shard of this number.
+    /// A shard of this number does not exist.
     #[error("there is no shard {shard}: this sweep has shards 0 to {}", shards - 1)]
     NoShard {
         /// The number asked for.

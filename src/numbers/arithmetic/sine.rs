@@ -12,7 +12,7 @@
 //! n mod 4 exchanges the two and sets their signs. The error is at most 1.1e-16: that of rounding to the nearest number
 //! and a little more. Angles beyond [`FARTHEST`], infinities and NaN are left to the standard library.
 //!
-//! There is no branch on the angle, so that a loop over a block becomes vector instructions.
+//! Nothing branches on the angle, so that a loop over a block becomes vector instructions.
 
 use crate::lane::LANES;
 

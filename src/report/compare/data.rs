@@ -63,7 +63,7 @@ struct Json<'a> {
     reference: Option<&'a str>,
     /// The linkages, better first.
     rows: Vec<Row<'a>>,
-    /// What could not be compared.
+    /// Results that could not be compared.
     left_out: &'a [LeftOut],
     /// Remarks in words.
     notes: Vec<String>,

@@ -53,7 +53,7 @@ pub struct FrontRequest {
 /// The reason why the axes of a front are refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AxesError {
-    /// There are too few axes, or too many.
+    /// Too few axes, or too many, are named.
     #[error("--axes {0}: name {LEAST_AXES} to {MOST_AXES} axes, such as rms,transmission,extent")]
     Count(String),
     /// An axis is named twice.
