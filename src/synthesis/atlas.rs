@@ -20,7 +20,7 @@
 //! Both are drawn from a fixed stream, once in a process, when they are first needed, on all cores.
 
 use super::coarse::points_of;
-use super::starts::{Starts, draw_ratios};
+use super::starts::{SLACK_RANGE, Starts, draw_ratios};
 use crate::mechanism::four_bar::mobility::{Mobility, linkage_type};
 use crate::mechanism::{Circuit, Complex, InputArc, LinkageType};
 use crate::numbers::arithmetic::dispatch::vectorised;
@@ -337,7 +337,7 @@ fn draw(stream: &mut Stream) -> Option<Entry> {
     let which = below(stream, 2) as u8;
     let reach = uniform(stream, 0.05_f64.ln(), 3.0_f64.ln()).exp();
     let angle = uniform(stream, -PI, PI);
-    let mut ratios = draw_ratios(stream, kind)?;
+    let mut ratios = draw_ratios(stream, kind, SLACK_RANGE)?;
     let mut kind = kind;
     if below(stream, NEAR_CHANGE_POINT_EVERY) == 0 {
         (ratios, kind) = near_change_point(stream, &ratios)?;

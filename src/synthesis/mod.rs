@@ -49,6 +49,7 @@ mod constants;
 pub mod context;
 pub mod continuation;
 mod driver;
+mod ellipse;
 pub mod errors_without;
 pub(crate) mod fixture;
 mod frame;

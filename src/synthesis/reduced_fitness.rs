@@ -249,7 +249,7 @@ impl<'a> ReducedFitness<'a> {
             let (low, high) = (one.min(other), one.max(other));
             Some((u8::from(!first), if direction > 0.0 { [low, high] } else { [high, low] }))
         };
-        self.starts.place(&ratios, &way, rocking, &mut room.positions)?;
+        self.starts.place(&ratios, &self.starts.arc, &way, rocking, &mut room.positions)?;
         let shape = self.starts.fit(&ratios, &self.known, &room.positions)?;
         let reading = self.physical.read_free(self.starts.space_of(&shape).0, &shape);
         Some(self.within_bounds(reading, shape, 0.0))

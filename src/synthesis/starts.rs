@@ -4,7 +4,7 @@
 //! p = s + (s2 + s3)/2, q = s + (s1 + s3)/2, l = s + (s1 + s2)/2 covers exactly the shapes whose shortest link
 //! is s and whose margin is positive. Phases of free timing follow the arc length of the target.
 
-use super::Context;
+use super::{Context, ellipse};
 use crate::mechanism::four_bar::mobility::{Mobility, grashof_margin, linkage_type};
 use crate::mechanism::{
     AssemblyMode, Circuit, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates,
@@ -33,6 +33,8 @@ pub struct Starts<'a> {
     pub(super) types: Vec<LinkageType>,
     /// The arc length up to each point, in parts of the whole (closed: of the closed curve).
     pub(super) arc: Vec<f64>,
+    /// The phases of the points on an ellipse, if the target is free, closed and nearly one ([`super::ellipse`]).
+    ellipse: Option<Vec<f64>>,
     /// One design space per side of the coupler point.
     pub(super) spaces: Vec<(CouplerSide, DesignSpace)>,
 }
@@ -54,6 +56,9 @@ impl<'a> Starts<'a> {
             problem,
             types: drawn_types(problem),
             arc: along.iter().map(|s| s / whole).collect(),
+            ellipse: (task.closed() && matches!(task.timing(), Timing::Free))
+                .then(|| ellipse::phases(points))
+                .flatten(),
             spaces: problem.sides().iter().map(|&side| (side, problem.space(side))).collect(),
         }
     }
@@ -88,7 +93,10 @@ impl<'a> Starts<'a> {
         let directions = self.problem.directions();
         let direction = directions[below(stream, directions.len())];
         let which = below(stream, self.spaces.len());
-        let ratios = draw_ratios(stream, drawn)?;
+        let on_ellipse = self.ellipse.as_ref().filter(|_| drawn == LinkageType::CrankRocker);
+        let on_ellipse = on_ellipse.filter(|_| below(stream, ELLIPSE_EVERY) == 0);
+        let slacks = if on_ellipse.is_some() { SMALL_CRANK_RANGE } else { SLACK_RANGE };
+        let ratios = draw_ratios(stream, drawn, slacks)?;
         let timed = !matches!(self.problem.task().timing(), Timing::Free);
         let aimed = if timed { !self.problem.types().is_empty() } else { self.problem.aims_at_types() };
         let aim = aimed.then_some(drawn);
@@ -121,7 +129,8 @@ impl<'a> Starts<'a> {
                 Some(Start { design: space.design(&shape, offset), setting, positions: Vec::new() })
             }
             Timing::Free => {
-                let positions = self.free_positions(stream, &ratios, (drawn, assembly), direction)?;
+                let along = on_ellipse.unwrap_or(&self.arc);
+                let positions = self.free_positions(stream, along, &ratios, (drawn, assembly), direction)?;
                 let shape = self.fit(&ratios, &known, &positions)?;
                 Some(start_from(space, setting, &shape, &positions))
             }
@@ -139,10 +148,12 @@ impl<'a> Starts<'a> {
         fit(ratios, known, positions, task.points(), task.weights())
     }
 
-    /// Draws positions (from the ground line) spread along the circuit as the points are along the target.
+    /// Draws positions (from the ground line) spread along the circuit as the points are `along` the target, in parts of
+    /// the whole.
     fn free_positions(
         &self,
         stream: &mut Stream,
+        along: &[f64],
         ratios: &Ratios,
         (kind, assembly): (LinkageType, AssemblyMode),
         direction: f64,
@@ -158,17 +169,18 @@ impl<'a> Starts<'a> {
             let is_against = (ends[1] - ends[0]) * direction < 0.0 && self.problem.directions().len() == 1;
             (self.problem.branch_any() || !is_against).then_some((circuit, ends))
         };
-        let mut positions = Positions::with_capacity(self.arc.len());
-        self.place(ratios, &way, rocking, &mut positions)?;
+        let mut positions = Positions::with_capacity(along.len());
+        self.place(ratios, along, &way, rocking, &mut positions)?;
         Some(positions)
     }
 
-    /// Computes positions (from the ground line) along the circuit as the points are along the target; `None` if the
-    /// loop is open. For a crank that rocks, `rocking` returns the number of the circuit (modulo their number) and the
+    /// Computes positions (from the ground line) along the circuit as the points are `along` the target, in parts of the
+    /// whole; `None` if the loop is open. For a crank that rocks, `rocking` returns the number of the circuit (modulo their number) and the
     /// two ends of the motion on its arc, in parts of its half width; they count unless the motion may pass toggles.
     pub(super) fn place(
         &self,
         ratios: &Ratios,
+        along: &[f64],
         &Way { kind, assembly, start, span }: &Way,
         rocking: impl FnOnce() -> Option<(u8, [f64; 2])>,
         positions: &mut Positions,
@@ -180,20 +192,20 @@ impl<'a> Starts<'a> {
             Some(())
         };
         if kind.input_turns_fully() || kind == LinkageType::ChangePoint {
-            return self.arc.iter().try_for_each(|s| take(start + span * s, assembly.sign()));
+            return along.iter().try_for_each(|s| take(start + span * s, assembly.sign()));
         }
         let mobility = unit_linkage(ratios)?;
         let (circuit, ends) = rocking()?;
         let arc = mobility.arc(Circuit { index: circuit % mobility.circuits().max(1) })?;
         let on_arc = |x: f64| arc.middle + INSIDE * arc.half_width * x;
         if self.problem.branch_any() {
-            return self.arc.iter().try_for_each(|s| {
+            return along.iter().try_for_each(|s| {
                 let psi = start + span * s;
                 take(on_arc(psi.sin()), if psi.cos() < 0.0 { -1.0 } else { 1.0 })
             });
         }
         let ends = ends.map(on_arc);
-        self.arc.iter().try_for_each(|s| take(ends[0] + (ends[1] - ends[0]) * s, assembly.sign()))
+        along.iter().try_for_each(|s| take(ends[0] + (ends[1] - ends[0]) * s, assembly.sign()))
     }
 }
 
@@ -252,14 +264,23 @@ pub(super) fn unit_linkage(ratios: &Ratios) -> Option<Mobility> {
 }
 
 /// Range of ratios over which slacks and lengths are drawn, evenly in their logarithm.
-const SLACK_RANGE: (f64, f64) = (0.02, 30.0);
+pub(super) const SLACK_RANGE: (f64, f64) = (0.02, 30.0);
 
 /// One draw in this many has a slack from `LONG_RANGE`, far beyond the usual.
 const LONG_EVERY: usize = 4;
 const LONG_RANGE: (f64, f64) = (30.0, 1000.0);
 
+/// On a target that is nearly an ellipse one draw of a crank-rocker in this many has its points at their phases on the
+/// ellipse, and slacks from `SMALL_CRANK_RANGE`.
+const ELLIPSE_EVERY: usize = 2;
+const SMALL_CRANK_RANGE: (f64, f64) = (2.0, 100.0);
+
 /// Draws the ratios of a linkage of a type; `None` if a few draws found none.
-pub(super) fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Ratios> {
+pub(super) fn draw_ratios(
+    stream: &mut Stream,
+    drawn: LinkageType,
+    slack_range: (f64, f64),
+) -> Option<Ratios> {
     let log_uniform =
         |stream: &mut Stream, (low, high): (f64, f64)| uniform(stream, low.ln(), high.ln()).exp();
     let links = match drawn {
@@ -272,7 +293,7 @@ pub(super) fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Rat
             tries.into_iter().find(|links| fits(*links))?
         }
         _ => {
-            let mut s = [(); 3].map(|()| log_uniform(stream, SLACK_RANGE));
+            let mut s = [(); 3].map(|()| log_uniform(stream, slack_range));
             let any = (below(stream, 3), below(stream, 4));
             if below(stream, LONG_EVERY) == 0 {
                 // Two long links beside each other: towards a slider in place of a link.

@@ -24,7 +24,7 @@ use super::constants::variable_projection::{
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
 use super::multistart::{LONG_FIT, SHORT_FIT, Spender, by_merit, judged, promise, round};
 use super::polish::{basins_wanted, promising};
-use super::starts::{Starts, draw_ratios};
+use super::starts::{SLACK_RANGE, Starts, draw_ratios};
 use super::states::{Judged, SearchState, TimedState, of_as_many_points};
 use super::{Context, HitsSoFar, Judging};
 use crate::judge::rank::{exact_cost, searched, sort};
@@ -235,7 +235,7 @@ impl<'a> Timed<'a> {
     fn draw(&self, draws: &mut Stream) -> Option<Reduced> {
         let types = &self.starts.types;
         let kind = types[below(draws, types.len())];
-        let ratios = draw_ratios(draws, kind)?;
+        let ratios = draw_ratios(draws, kind, SLACK_RANGE)?;
         let angle = uniform(draws, -PI, PI);
         let form = &self.forms[0].1;
         let angle = if form.has_angle() { angle } else { 0.0 };
