@@ -42,23 +42,26 @@ def _result(given: Any) -> Result:
 class Verification:
     """The outcome of recomputing a record; true if every figure and verdict agrees."""
 
-    __slots__ = ("held_to_limits", "mismatches", "not_checked")
+    __slots__ = ("held_to_limits", "leaves", "mismatches", "not_checked")
 
     #: What differs: dicts with ``rank``, ``what``, ``recorded``, ``found`` and the sentence ``text``.
     mismatches: list[dict[str, Any]]
+    #: What the leaves of the certificate show, if that was asked for: ``shown``, the number of ``leaves`` and of the
+    #: ``boxes`` into which they were halved; or why they do not show it (``text``), and whether it is ``refuted``.
+    leaves: dict[str, Any] | None
     #: The keys that are held to limits only.
     held_to_limits: list[str]
     #: The keys that are not recomputed.
     not_checked: list[str]
 
     def __init__(self, found: dict[str, Any]) -> None:
-        self.mismatches = found["mismatches"]
+        self.mismatches, self.leaves = found["mismatches"], found["leaves"]
         self.held_to_limits, self.not_checked = found["held_to_limits"], found["not_checked"]
 
     @property
     def ok(self) -> bool:
-        """Whether the record is true."""
-        return not self.mismatches
+        """Whether the record is true, and its leaves, if they were checked, show its certificate."""
+        return not self.mismatches and (self.leaves is None or bool(self.leaves["shown"]))
 
     def __bool__(self) -> bool:
         return self.ok
@@ -66,24 +69,30 @@ class Verification:
     def __repr__(self) -> str:
         if self.ok:
             return "<Verification: true>"
-        return "<Verification: NOT true: " + "; ".join(m["text"] for m in self.mismatches) + ">"
+        faults, untrue = [m["text"] for m in self.mismatches], bool(self.mismatches)
+        if self.leaves is not None and not self.leaves["shown"]:
+            faults.append("leaves: " + self.leaves["text"])
+            untrue = untrue or self.leaves["refuted"]
+        return f"<Verification: NOT {'true' if untrue else 'shown'}: " + "; ".join(faults) + ">"
 
 
-def verify(result: Result | Path, *, certificate: bool = False) -> Verification:
+def verify(result: Result | Path, *, certificate: bool = False, leaves: bool = False) -> Verification:
     """Recomputes every figure and verdict of a result from its problem and its linkages.
 
     Args:
         result: a result, its folder or its ``record.json``.
         certificate: works out the certificate again too, box by box: as long as :func:`certify` took.
+        leaves: checks the leaves of the certificate with arithmetic of their own, some minutes: those of a result of
+            :func:`certify`, or ``certificate.leaves`` in the result's folder.
 
     Raises:
-        ProblemError: there is no record, its problem is none, or it has no certificate.
+        ProblemError: there is no record, its problem is none, or it has no certificate or no leaves.
 
     >>> import linkwright as lw
     >>> bool(lw.verify(lw.synth(lw.path([[0, 0], [1, 1], [2, 1.5], [3, 1]]))))
     True
     """
-    return Verification(_linkwright.verify(_result(result)._run, certificate))
+    return Verification(_linkwright.verify(_result(result)._run, certificate, leaves))
 
 
 def certify(
@@ -93,6 +102,7 @@ def certify(
     time_limit_s: float | None = None,
     threads: int | None = None,
     progress: Progress = None,
+    resume: bool = False,
 ) -> Result:
     """Proves that no linkage whose input turns fully is better than a result by more than a gap (prescribed timing).
 
@@ -101,19 +111,22 @@ def certify(
         gap: how far below the best candidate the proved bound may be, relative, in (0, 1); 1e-4 where silent.
         time_limit_s: seconds at most; what is proved by then counts. 300 where silent.
         threads, progress: as for :func:`linkwright.synth`.
+        resume: goes on where a proof with the same gap was stopped: that of `result`, if :func:`certify` returned it, else
+            that of ``certificate.checkpoint`` in its folder. If none was stopped, it begins anew.
 
     Returns:
-        The result with its :attr:`Result.certificate`; :meth:`Result.save` writes the decided boxes beside it
-        (``certificate.leaves``), which ``linkwright verify --leaves`` checks with arithmetic of its own.
+        The result with its :attr:`Result.certificate`, unless the one that it had proves more: that one stays then.
+        :meth:`Result.save` writes beside it the decided boxes (``certificate.leaves``), which :func:`verify` checks with
+        ``leaves=True``, and, if the proof is not at its end, the checkpoint for `resume`.
 
     Raises:
-        ProblemError: nothing can be proved about such a task.
+        ProblemError: nothing can be proved about such a task, or the checkpoint is of another proof.
         KeyboardInterrupt: Ctrl-C; its attribute ``result`` has what was proved by then.
     """
     found = _result(result)
     callback, close = listener(progress, found.name)
     try:
-        return Result(_linkwright.certify(found._run, gap, time_limit_s, threads, callback))
+        return Result(_linkwright.certify(found._run, gap, time_limit_s, threads, callback, resume))
     except BaseException as interrupt:
         wrap(interrupt)
         raise
@@ -311,6 +324,7 @@ def snap(
     *,
     grid: float | None = None,
     lengths: Any = None,
+    pitches: Path | None = None,
     snap: Sequence[str] | None = None,
     keep: Sequence[str] = (),
     set: Mapping[str, float] | None = None,  # noqa: A002
@@ -320,7 +334,8 @@ def snap(
 
     Args:
         linkage: a candidate, a result (its first candidate), a linkage (measured on its own curve) or a path.
-        grid: the stock: multiples of this; or `lengths`: these lengths, shape (n,).
+        grid: the stock: multiples of this; or `lengths`: these lengths, shape (n,); or `pitches`: the lengths in this text
+            file, one a line or separated by commas. One of the three.
         snap: the hole distances that are snapped; where silent, ``ground, a, b, c, d, e``.
         keep: what stays exactly as it is: ``ground, a, b, c, d, e, A, B, ground_angle_deg``.
         set: dimensions with values of their own.
@@ -336,7 +351,7 @@ def snap(
     values = [(key, float(value)) for key, value in (set or {}).items()]
     chosen = None if snap is None else list(snap)
     try:
-        run, _ = _linkwright.snap(subject, which, grid, stock, chosen, list(keep), values, threads)
+        run, _ = _linkwright.snap(subject, which, grid, stock, pitches, chosen, list(keep), values, threads)
     except BaseException as interrupt:
         wrap(interrupt)
         raise

@@ -308,13 +308,14 @@ def synth(
 def open(path: _Path) -> Run: ...
 def parse_run(text: bytes) -> Run: ...
 def parse_linkage(text: str) -> FourBar | Chain: ...
-def verify(result: Run, certificate: bool = False) -> dict[str, Any]: ...
+def verify(result: Run, certificate: bool = False, leaves: bool = False) -> dict[str, Any]: ...
 def certify(
     result: Run,
     gap: float | None = None,
     time_limit_s: float | None = None,
     threads: int | None = None,
     progress: _Progress | None = None,
+    resume: bool = False,
 ) -> Run: ...
 def compare(
     subjects: Sequence[tuple[Any, str | None, str]],
@@ -344,6 +345,7 @@ def snap(
     which: str | None,
     grid: float | None,
     lengths: list[float] | None,
+    pitches: _Path | None,
     snap: list[str] | None,
     keep: list[str],
     set: list[tuple[str, float]],

@@ -23,8 +23,16 @@ def load_problem(path: str | os.PathLike[str]) -> Problem:
     return Problem.load(path)
 
 
-def _problem(kind: str, task: Mapping[str, Any], tables: Mapping[str, Any]) -> Problem:
+def _problem(kind: str, task: dict[str, Any], crank_deg: Any = None, offset: str | None = None, **tables: Any) -> Problem:
+    if crank_deg is not None or offset is not None:
+        task["timing"] = {"crank_deg": crank_deg, "offset": offset}
     return Problem.of({"format": 1, "task": {kind: task}, **tables})
+
+
+def _file(given: Any) -> str | None:
+    """Returns the path that an argument names; None if it holds the values themselves."""
+    named = given.__fspath__() if hasattr(given, "__fspath__") else given
+    return named if isinstance(named, str) else None
 
 
 def path(
@@ -77,16 +85,12 @@ def path(
     task: dict[str, Any] = {
         "closed": closed, "tolerance": tolerance, "weight": weight, "samples": samples, "smooth": smooth,
     }  # fmt: skip
-    place = getattr(points, "__fspath__", None)
-    if place is not None:
-        points = place()
-    if isinstance(points, str):
-        task["svg" if points.lower().endswith(".svg") else "file"] = points
-    else:
-        task["points"] = points
-    if crank_deg is not None or offset is not None:
-        task["timing"] = {"crank_deg": crank_deg, "offset": offset}
-    return _problem("path", task, _tables(design, require, solve, certify, name, source, unit))
+    file = _file(points)
+    task["points" if file is None else "svg" if file.lower().endswith(".svg") else "file"] = file or points
+    return _problem(
+        "path", task, crank_deg, offset, name=name, source=source, unit=unit, design=design, require=require,
+        solve=solve, certify=certify,
+    )  # fmt: skip
 
 
 def motion(
@@ -123,11 +127,12 @@ def motion(
         "angle_weight": angle_weight, "tolerance": tolerance, "tolerance_deg": tolerance_deg,
         "exact": exact, "closed": closed,
     }  # fmt: skip
-    place = getattr(poses, "__fspath__", None)
-    task["file" if place is not None or isinstance(poses, str) else "poses"] = poses
-    if crank_deg is not None or offset is not None:
-        task["timing"] = {"crank_deg": crank_deg, "offset": offset}
-    return _problem("motion", task, _tables(design, require, solve, None, name, source, unit))
+    file = _file(poses)
+    task["poses" if file is None else "file"] = file or poses
+    return _problem(
+        "motion", task, crank_deg, offset, name=name, source=source, unit=unit, design=design, require=require,
+        solve=solve,
+    )  # fmt: skip
 
 
 def function(
@@ -175,22 +180,9 @@ def function(
         "file": file, "input_offset": input_offset, "output_offset": output_offset, "sense": sense,
         "tolerance": tolerance, "tolerance_deg": tolerance_deg, "weight": weight,
     }  # fmt: skip
-    return _problem("function", task, _tables(design, require, solve, None, name, source, unit))
-
-
-def _tables(
-    design: Mapping[str, Any] | None,
-    require: Mapping[str, Any] | None,
-    solve: Mapping[str, Any] | None,
-    certify: Mapping[str, Any] | None,
-    name: str | None,
-    source: str | None,
-    unit: str | None,
-) -> dict[str, Any]:
-    return {
-        "name": name, "source": source, "unit": unit,
-        "design": design, "require": require, "solve": solve, "certify": certify,
-    }  # fmt: skip
+    return _problem(
+        "function", task, name=name, source=source, unit=unit, design=design, require=require, solve=solve
+    )  # fmt: skip
 
 
 def as_problem(given: Any) -> Problem:

@@ -126,7 +126,7 @@ class Merged:
         """Returns the table as a pandas frame."""
         import pandas
 
-        return pandas.read_csv(self.csv, comment="#")
+        return pandas.read_csv(self.csv)
 
     def __repr__(self) -> str:
         return f"<Merged {self.csv!r}: {self.accepted} of {self.rows} rows accepted>"

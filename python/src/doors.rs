@@ -1,22 +1,20 @@
-//! Everything else that the command line does: verify, certify, compare, analyze, cognates, build, snap, export, suite.
+//! Everything else that the command line does but proofs: compare, analyze, cognates, build, snap, export, suite.
 
 use crate::chain::Chain;
 use crate::errors::{guarded, refused};
 use crate::linkage::FourBar;
 use crate::problem::Problem;
-use crate::run::{Run, told_of_proof};
+use crate::run::Run;
 use crate::waiting::{Ended, carrying, run, run_whole};
 use crate::{pools, values};
 use linkwright::internals::app::comparison::{self, NotCompared, Target};
 use linkwright::internals::app::inputs::{self, Given};
-use linkwright::internals::app::snapping::{Subject as Snapping, fixed};
+use linkwright::internals::app::snapping::{Subject as Snapping, fixed, pitches as read_pitches};
 use linkwright::internals::app::suite::choice::chosen;
 use linkwright::internals::app::suite::{Options as SuiteOptions, Step, suite as run_suite};
 use linkwright::internals::files::linkage_file::{self, AnyLinkageFile, LinkageFile};
 use linkwright::internals::files::name;
 use linkwright::internals::files::schema::{SchemaKind, schema as schema_of};
-use linkwright::internals::judge::certificate::{Proof, Request as ProofRequest};
-use linkwright::internals::judge::verify::{Checked, unchecked, verify as verify_record, verify_certificate};
 use linkwright::internals::mechanism::Linkage;
 use linkwright::internals::mechanism::analysis::chain::{ChainRequest, analyze_chain};
 use linkwright::internals::mechanism::analysis::{
@@ -36,14 +34,13 @@ use linkwright::internals::synthesis::snap::{
     Length, Request as SnapRequest, Stock, record as snap_record, snap as snapped,
 };
 use linkwright::internals::synthesis::{Budget, Context};
-use linkwright::internals::task::spec::{CertifySpec, MAX_CERTIFY_S};
+use linkwright::internals::task::spec::CertifySpec;
 use linkwright::{ExportFormat, ExportSettings, ExportSubject, export as write_export};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 /// Returns what an argument names: a path, a linkage, or a run with the choice of its linkages.
 pub fn given(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<Given> {
@@ -109,84 +106,6 @@ fn of_file<'py>(py: Python<'py>, file: AnyLinkageFile, text: String) -> PyResult
             Bound::new(py, FourBar { file: LinkageFile { name, unit, linkage } })?.into_any()
         }
         Linkage::Chain(chain) => Bound::new(py, Chain { name, unit, chain: *chain, text })?.into_any(),
-    })
-}
-
-/// Recomputes a record: what differs, in words, and the keys that are not recomputed.
-#[pyfunction]
-#[pyo3(signature = (result, certificate = false))]
-pub fn verify<'py>(
-    py: Python<'py>,
-    result: &Bound<'py, Run>,
-    certificate: bool,
-) -> PyResult<Bound<'py, PyAny>> {
-    guarded(|| {
-        let record = result.get().record.clone();
-        if certificate && record.certificate.is_none() {
-            return Err(refused("the record has no certificate; run certify first"));
-        }
-        let found = run_whole(py, move |talk| {
-            let mut found =
-                verify_record(&record).map_err(|e| format!("the recorded problem is none: {e}"))?;
-            if certificate {
-                let again = verify_certificate(&record, &talk.cancel, &mut |_| {});
-                found.extend(again.map_err(|e| e.to_string())?.unwrap_or_default());
-            }
-            let told: Vec<_> = found
-                .iter()
-                .map(|m| {
-                    json!({ "rank": m.rank, "what": m.what, "recorded": m.recorded, "found": m.found,
-                            "text": m.to_string() })
-                })
-                .collect();
-            let (limits, not) = (unchecked(&record, Checked::Bounded), unchecked(&record, Checked::Not));
-            Ok::<_, String>(json!({ "mismatches": told, "held_to_limits": limits, "not_checked": not }))
-        })?;
-        values::to_python(py, &found.map_err(refused)?)
-    })
-}
-
-/// Proves a lower bound of the error; the run with its certificate.
-#[pyfunction]
-#[pyo3(signature = (result, gap = None, time_limit_s = None, threads = None, progress = None))]
-pub fn certify<'py>(
-    py: Python<'py>,
-    result: &Bound<'py, Run>,
-    gap: Option<f64>,
-    time_limit_s: Option<f64>,
-    threads: Option<i64>,
-    progress: Option<&Bound<'py, PyAny>>,
-) -> PyResult<Run> {
-    guarded(|| {
-        let usual = CertifySpec::default();
-        let (gap, seconds) = (gap.unwrap_or(usual.gap), time_limit_s.unwrap_or(usual.time_limit_s));
-        if !(gap > 0.0 && gap < 1.0) {
-            return Err(refused(format!(
-                "gap = {gap}: a gap is between 0 and 1, such as 1e-4 for a hundredth of a per cent"
-            )));
-        }
-        if !(seconds > 0.0 && seconds <= MAX_CERTIFY_S) {
-            return Err(refused(format!(
-                "time_limit_s = {seconds}: above 0, at most {MAX_CERTIFY_S:e} seconds"
-            )));
-        }
-        let of = result.get().clone();
-        let Ended { value, interrupt } = run(py, pools::threads(threads)?, progress, move |talk| {
-            let deadline = Instant::now() + Duration::from_secs_f64(seconds);
-            let mut proof = Proof::new(&of.record, &ProofRequest { gap }).map_err(|e| e.to_string())?;
-            proof.run(&talk.cancel, Some(deadline), &mut |progress| talk.tell(|| told_of_proof(progress)));
-            let leaves = proof.leaves();
-            let mut record = (*of.record).clone();
-            record.certificate = Some(proof.certificate_of(&leaves));
-            record.no_certificate = None;
-            let leaves = Some(leaves.to_bytes().into());
-            Ok::<_, String>(Run { record: record.into(), leaves, ..of })
-        })?;
-        let found = value.map_err(refused)?;
-        match interrupt {
-            None => Ok(found),
-            Some(interrupt) => Err(carrying(py, interrupt, Bound::new(py, found)?.into_any())),
-        }
     })
 }
 
@@ -324,7 +243,7 @@ pub fn build<'py>(
 
 /// Brings lengths to stock sizes; the run of the snapped linkages, and the text.
 #[pyfunction]
-#[pyo3(signature = (subject, which, grid, lengths, snap, keep, set, threads = None))]
+#[pyo3(signature = (subject, which, grid, lengths, pitches, snap, keep, set, threads = None))]
 #[expect(clippy::too_many_arguments, reason = "the options of the command")]
 pub fn snap<'py>(
     py: Python<'py>,
@@ -332,16 +251,18 @@ pub fn snap<'py>(
     which: Option<&str>,
     grid: Option<f64>,
     lengths: Option<Vec<f64>>,
+    pitches: Option<PathBuf>,
     snap: Option<Vec<String>>,
     keep: Vec<String>,
     set: Vec<(String, f64)>,
     threads: Option<i64>,
 ) -> PyResult<(Run, String)> {
     guarded(|| {
-        let stock = match (grid, &lengths) {
-            (Some(step), None) => Stock::grid(step).map_err(refused)?,
-            (None, Some(lengths)) => Stock::list(lengths).map_err(refused)?,
-            _ => return Err(refused("give grid or lengths: the stock")),
+        let stock = match (grid, &lengths, &pitches) {
+            (Some(step), None, None) => Stock::grid(step).map_err(refused)?,
+            (None, Some(lengths), None) => Stock::list(lengths).map_err(refused)?,
+            (None, None, Some(file)) => read_pitches(file).map_err(refused)?,
+            _ => return Err(refused("give the stock: one of grid, lengths and pitches")),
         };
         let named = |key: &String| {
             Length::named(key)

@@ -6,11 +6,12 @@
 //! | [`arrays`] | arrays of numpy in and out, with the rule of conversion |
 //! | [`building`] | what it takes to build a linkage, as data |
 //! | [`chain`] | the class of chains |
-//! | [`doors`] | everything that the command line does beside synth and front |
+//! | [`doors`] | everything that the command line does beside synth, front and proofs |
 //! | [`errors`] | exceptions, and the border that no panic crosses |
 //! | [`linkage`] | the class of four-bars |
 //! | [`pools`] | thread pools that are kept between calls, fork-safe |
 //! | [`problem`] | the class of problems |
+//! | [`proving`] | proofs: verify and certify |
 //! | [`run`] | the class of runs; synth, front and opening |
 //! | [`sweeping`] | sweeps: plan, run, merge |
 //! | [`timing`] | the library's own times, for the benchmark |
@@ -25,6 +26,7 @@ mod errors;
 mod linkage;
 mod pools;
 mod problem;
+mod proving;
 mod run;
 mod sweeping;
 mod timing;
@@ -51,8 +53,8 @@ fn _linkwright(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(run::parse_run, module)?)?;
     module.add_function(wrap_pyfunction!(doors::load, module)?)?;
     module.add_function(wrap_pyfunction!(doors::parse_linkage, module)?)?;
-    module.add_function(wrap_pyfunction!(doors::verify, module)?)?;
-    module.add_function(wrap_pyfunction!(doors::certify, module)?)?;
+    module.add_function(wrap_pyfunction!(proving::verify, module)?)?;
+    module.add_function(wrap_pyfunction!(proving::certify, module)?)?;
     module.add_function(wrap_pyfunction!(doors::compare, module)?)?;
     module.add_function(wrap_pyfunction!(doors::analyze, module)?)?;
     module.add_function(wrap_pyfunction!(doors::build, module)?)?;

@@ -4,11 +4,12 @@ use crate::arrays::{Input, Output};
 use crate::errors::{guarded, refused};
 use crate::values;
 use linkwright::internals::files::linkage_file::{self, LinkageFile};
-use linkwright::internals::mechanism::analysis;
+use linkwright::internals::files::name;
 use linkwright::internals::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
-use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, LinkageMotion};
+use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, LinkageMotion, PointMotion, Turning};
 use linkwright::internals::mechanism::four_bar::positions::JointColumns;
-use linkwright::{AssemblyMode, CouplerCurve, CouplerSide, NaturalCoordinates, Unit};
+use linkwright::internals::mechanism::{analysis, xy};
+use linkwright::{AssemblyMode, Complex, CouplerCurve, CouplerSide, NaturalCoordinates, Unit};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -91,12 +92,19 @@ impl FourBar {
         py: Python<'py>,
         phi: &Bound<'py, PyAny>,
         input: CrankMotion,
-        read: fn(&LinkageMotion) -> [f64; 8],
+        of_point: fn(PointMotion) -> Complex,
+        of_link: fn(Turning) -> f64,
     ) -> PyResult<Rates> {
         let angles = Input::of(phi, "phi")?;
         let shape = angles.shape();
         let linear = || Output::new(py, shape, Some(2));
         let angular = || Output::new(py, shape, None);
+        let read = |motion: &LinkageMotion| {
+            let LinkageMotion { crank_pin, follower_pin, coupler_point, coupler, follower, .. } = *motion;
+            let points = [crank_pin, follower_pin, coupler_point].map(|point| xy(of_point(point)));
+            (points, [coupler, follower].map(of_link))
+        };
+        let open = ([[f64::NAN; 2]; 3], [f64::NAN; 2]);
         let (mut points, mut links) = ([linear()?, linear()?, linear()?], [angular()?, angular()?]);
         {
             let numbers = angles.numbers()?;
@@ -108,9 +116,7 @@ impl FourBar {
             py.detach(|| {
                 for (i, angle) in numbers.iter().enumerate() {
                     let motion = linkage.motion(*angle, input).definite();
-                    let [cx, cy, dx, dy, px, py, w3, w4] = motion.as_ref().map_or([f64::NAN; 8], read);
-                    (c[i], d[i], p[i]) = ([cx, cy], [dx, dy], [px, py]);
-                    (coupler[i], follower[i]) = (w3, w4);
+                    ([c[i], d[i], p[i]], [coupler[i], follower[i]]) = motion.as_ref().map_or(open, read);
                 }
             });
         }
@@ -284,10 +290,8 @@ impl FourBar {
     #[pyo3(signature = (phi, omega = 1.0))]
     fn velocities<'py>(&self, py: Python<'py>, phi: &Bound<'py, PyAny>, omega: f64) -> PyResult<Rates> {
         guarded(|| {
-            self.rates(py, phi, CrankMotion::steady(omega), |m| {
-                let [c, d, p] = [m.crank_pin, m.follower_pin, m.coupler_point].map(|joint| joint.velocity);
-                [c.re, c.im, d.re, d.im, p.re, p.im, m.coupler.speed_rad_s, m.follower.speed_rad_s]
-            })
+            let input = CrankMotion::steady(omega);
+            self.rates(py, phi, input, |point| point.velocity, |link| link.speed_rad_s)
         })
     }
 
@@ -302,12 +306,7 @@ impl FourBar {
     ) -> PyResult<Rates> {
         guarded(|| {
             let input = CrankMotion { speed_rad_s: omega, acceleration_rad_s2: alpha };
-            self.rates(py, phi, input, |m| {
-                let [c, d, p] =
-                    [m.crank_pin, m.follower_pin, m.coupler_point].map(|joint| joint.acceleration);
-                let links = [m.coupler.acceleration_rad_s2, m.follower.acceleration_rad_s2];
-                [c.re, c.im, d.re, d.im, p.re, p.im, links[0], links[1]]
-            })
+            self.rates(py, phi, input, |point| point.acceleration, |link| link.acceleration_rad_s2)
         })
     }
 
@@ -354,7 +353,7 @@ impl FourBar {
 
     /// Returns the text of its linkage file.
     fn to_toml(&self) -> String {
-        let name = linkwright::internals::files::name::legal(&self.file.name, "linkage");
+        let name = name::legal(&self.file.name, "linkage");
         linkage_file::to_toml(&name, self.file.unit, &self.file.linkage)
     }
 
@@ -364,7 +363,7 @@ impl FourBar {
             let found = self.file.linkage.cognates().into_iter().flatten().map(|cognate| cognate.linkage);
             let named = |(i, linkage): (usize, linkwright::FourBar)| {
                 let suffix = format!("-cognate-{}", i + 1);
-                let name = linkwright::internals::files::name::with_suffix(&self.file.name, &suffix);
+                let name = name::with_suffix(&self.file.name, &suffix);
                 FourBar { file: LinkageFile { name, unit: self.file.unit, linkage } }
             };
             Ok(found.enumerate().map(named).collect())

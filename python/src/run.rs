@@ -7,7 +7,9 @@ use crate::waiting::{Ended, Talk, carrying, run};
 use crate::{pools, values};
 use linkwright::internals::app::inputs::{self, Given, Which};
 use linkwright::internals::app::job::files::{self, Timing};
-use linkwright::internals::app::job::folder::{LEAVES, ResultsFolder, parse_record, read_record};
+use linkwright::internals::app::job::folder::{
+    CERTIFICATE_CHECKPOINT, LEAVES, ResultsFolder, parse_record, read_record,
+};
 use linkwright::internals::app::job::run::{Context, Finished, Job, prove, run as search};
 use linkwright::internals::app::job::save::{self, Listener, Options, Ran};
 use linkwright::internals::files::linkage_file::LinkageFile;
@@ -36,8 +38,10 @@ pub struct Run {
     pub timing: Option<Timing>,
     /// The folder that it was written to or read from.
     pub folder: Option<PathBuf>,
-    /// The leaves of its certificate, if they were asked for.
+    /// The leaves of its certificate, if it was proved here.
     pub leaves: Option<Arc<Vec<u8>>>,
+    /// The checkpoint of its proof, if it was begun here and can go on.
+    pub checkpoint: Option<Arc<Vec<u8>>>,
 }
 
 /// The run's folder and how it is used.
@@ -76,7 +80,7 @@ fn searched(job: &Job, place: Option<&Place>, talk: &Talk) -> Result<Run, String
         let advice_s = Some(advice_s).filter(|_| job.spec.solve.advice);
         let total_s = begun.elapsed().as_secs_f64();
         let timing = Some(Timing { search_s, beside_s, advice_s, total_s, threads });
-        return Ok(Run { record: Arc::new(record), timing, folder: None, leaves: None });
+        return Ok(Run { record: Arc::new(record), timing, folder: None, leaves: None, checkpoint: None });
     };
     let listener = Listener { observer: &observer, proving: &proving, tell: &|_| {} };
     let how = Options { resume: *resume, ..Options::default() };
@@ -88,7 +92,13 @@ fn searched(job: &Job, place: Option<&Place>, talk: &Talk) -> Result<Run, String
             put.pop().ok_or("nothing was written")?.map_err(|why| why.to_string())?
         }
     };
-    Ok(Run { record: Arc::new(done.record), timing: done.timing, folder: Some(done.folder), leaves: None })
+    Ok(Run {
+        record: Arc::new(done.record),
+        timing: done.timing,
+        folder: Some(done.folder),
+        leaves: None,
+        checkpoint: None,
+    })
 }
 
 /// Runs a problem; `front` names the axes and the number of members of a front.
@@ -141,7 +151,7 @@ fn request(axes: &[String], points: usize) -> PyResult<FrontRequest> {
 pub fn open(path: PathBuf) -> PyResult<Run> {
     guarded(|| {
         let record = read_record(&path).map_err(refused)?;
-        Ok(Run { record: Arc::new(record), timing: None, folder: Some(path), leaves: None })
+        Ok(Run { record: Arc::new(record), timing: None, folder: Some(path), leaves: None, checkpoint: None })
     })
 }
 
@@ -150,14 +160,14 @@ pub fn open(path: PathBuf) -> PyResult<Run> {
 pub fn parse_run(text: &[u8]) -> PyResult<Run> {
     guarded(|| {
         let record = parse_record("record.json", text).map_err(refused)?;
-        Ok(Run { record: Arc::new(record), timing: None, folder: None, leaves: None })
+        Ok(Run { record: Arc::new(record), timing: None, folder: None, leaves: None, checkpoint: None })
     })
 }
 
 impl Run {
     /// Returns a run of a record that was computed here.
     pub fn of(record: Record) -> Self {
-        Run { record: Arc::new(record), timing: None, folder: None, leaves: None }
+        Run { record: Arc::new(record), timing: None, folder: None, leaves: None, checkpoint: None }
     }
 
     /// Returns the run with the choice of one of its linkages, or of all: as after the colon of a RESULT.
@@ -274,8 +284,8 @@ impl Run {
             let written = crate::waiting::run_whole(py, move |_| {
                 let mut place = ResultsFolder::take(&folder).map_err(|why| why.to_string())?;
                 let mut all = files::files(&taken.record, &taken.timing()).map_err(|why| why.to_string())?;
-                if let Some(leaves) = &taken.leaves {
-                    all.push((LEAVES.into(), leaves.to_vec()));
+                for (name, bytes) in [(LEAVES, &taken.leaves), (CERTIFICATE_CHECKPOINT, &taken.checkpoint)] {
+                    all.extend(bytes.as_ref().map(|bytes| (name.into(), bytes.to_vec())));
                 }
                 place.replace(&all).map_err(|why| why.to_string())
             })?;

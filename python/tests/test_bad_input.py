@@ -158,7 +158,7 @@ def test_what_cannot_be_done_with_a_result_is_refused(arc: lw.Result) -> None:
     assert "gap = 2" in refusal(lw.certify, arc, gap=2.0)
     assert "time_limit_s = -1" in refusal(lw.certify, arc, time_limit_s=-1.0)
     assert "hole = -1" in refusal(lw.build, arc, hole=-1.0)
-    assert "give grid or lengths" in refusal(lw.snap, arc)
+    assert "give the stock: one of grid, lengths and pitches" in refusal(lw.snap, arc)
     assert "0 is no stock length" in refusal(lw.snap, arc, grid=0.0)
     assert "x: a hole distance is one of" in refusal(lw.snap, arc, grid=1.0, snap=["x"])
     assert "x: what can be kept" in refusal(lw.snap, arc, grid=1.0, keep=["x"])

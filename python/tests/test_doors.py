@@ -118,6 +118,103 @@ def test_a_bound_is_proved(literature: Path, tmp_path: Path) -> None:
     assert lw.verify(tmp_path / "proved").ok
 
 
+def test_leaves_are_checked_as_by_the_command(root: Path, tmp_path: Path, program: list[str]) -> None:
+    """The leaves of a proof, held or beside a record, show it; others, cut ones and none do not."""
+    found = lw.synth(root / "problems" / "literature" / "k18.toml")
+    with pytest.raises(lw.ProblemError, match="the record has no certificate; run certify with --leaves first"):
+        lw.verify(found, leaves=True)
+    proved = lw.certify(found, gap=0.9, time_limit_s=0.5)
+    shown = lw.verify(proved, leaves=True)
+    assert shown, shown
+    assert shown.leaves is not None
+    assert shown.leaves["leaves"] > 0
+    assert shown.leaves["boxes"] >= shown.leaves["leaves"]
+    assert lw.verify(proved).leaves is None
+    place = tmp_path / "proved"
+    proved.save(place)
+    assert lw.verify(place, leaves=True).leaves == lw.verify(place / "record.json", leaves=True).leaves == shown.leaves
+    said = call([*program, "verify", str(place), "--leaves"])
+    assert said.returncode == 0, said.stderr
+    assert f"{shown.leaves['leaves']} leaves, {shown.leaves['boxes']}" in " ".join(said.stdout.split())
+    leaves = place / "certificate.leaves"
+    whole = leaves.read_bytes()
+    leaves.write_bytes(whole[:-7])
+    wrong = lw.verify(place, leaves=True)
+    assert not wrong
+    assert wrong.leaves is not None
+    assert wrong.leaves["refuted"]
+    assert "cut off" in wrong.leaves["text"]
+    assert "NOT true: leaves: " in repr(wrong)
+    for fault, words in ((b"something else", "certificate.leaves: these are no leaves"), (None, "there are no leaves")):
+        leaves.write_bytes(fault) if fault else leaves.unlink()
+        with pytest.raises(lw.ProblemError, match=words):
+            lw.verify(place, leaves=True)
+        said = call([*program, "verify", str(place), "--leaves"])
+        assert said.returncode == 2
+        assert words in said.stderr
+
+
+def test_a_proof_that_was_stopped_goes_on(k18: lw.Result, tmp_path: Path, program: list[str]) -> None:
+    first = lw.certify(k18, time_limit_s=0.5)
+    then = lw.certify(first, time_limit_s=0.5, resume=True)
+    assert first.certificate is not None
+    assert then.certificate is not None
+    assert not then.certificate["closed"]
+    assert then.certificate["boxes"] > first.certificate["boxes"]
+    assert then.certificate["lower_bound"] >= first.certificate["lower_bound"]
+    # From the files of before, here and by the command; the proof says what its leaves show.
+    place = tmp_path / "proof"
+    then.save(place)
+    said = call([*program, "certify", str(place), "--resume", "--quiet", "--set", "certify.time_limit_s=0.5"])
+    assert said.returncode == 1, said.stderr
+    opened = lw.open(place)
+    assert opened.certificate is not None
+    assert opened.certificate["boxes"] > then.certificate["boxes"]
+    last = lw.certify(opened, time_limit_s=0.5, resume=True)
+    assert last.certificate is not None
+    assert last.certificate["boxes"] > opened.certificate["boxes"]
+    assert lw.verify(last, leaves=True)
+    # A proof that begins anew and proves less takes nothing away.
+    less = lw.certify(last, time_limit_s=1e-9)
+    assert less.certificate == last.certificate
+    # What is of another proof, or was cut, is refused as by the command.
+    with pytest.raises(lw.ProblemError, match=r"certificate\.checkpoint: this is of another result or another gap"):
+        lw.certify(place, gap=0.5, time_limit_s=0.5, resume=True)
+    checkpoint = place / "certificate.checkpoint"
+    checkpoint.write_bytes(checkpoint.read_bytes()[:-9])
+    with pytest.raises(lw.ProblemError, match="cut off"):
+        lw.certify(place, time_limit_s=0.5, resume=True)
+    # Where none was stopped it begins anew.
+    checkpoint.unlink()
+    assert lw.certify(place, gap=0.9, time_limit_s=0.5, resume=True).certificate is not None
+    assert lw.certify(k18, gap=0.9, time_limit_s=0.5, resume=True).certificate is not None
+
+
+def test_the_stock_can_be_a_file(k18: lw.Result, tmp_path: Path, program: list[str]) -> None:
+    crank = k18.candidates[0].linkage.a
+    bars = tmp_path / "bars.txt"
+    bars.write_text(f"{0.98 * crank}, {1.01 * crank}\n{2 * crank}\n")
+    stock = [0.98 * crank, 1.01 * crank, 2 * crank]
+    found = lw.snap(k18, pitches=bars, snap=["a"])
+    assert found.candidates[0].linkage.a in stock
+    assert found.record["candidates"] == lw.snap(k18, lengths=stock, snap=["a"]).record["candidates"]
+    k18.save(tmp_path / "k18")
+    said = call([*program, "snap", str(tmp_path / "k18"), "--pitches", str(bars), "--snap", "a", "--out", str(tmp_path / "snapped")])
+    assert (tmp_path / "snapped").is_dir(), said.stderr
+    assert lw.open(tmp_path / "snapped").record["candidates"] == found.record["candidates"]
+    bars.write_text("1\nlong\n")
+    with pytest.raises(lw.ProblemError, match=r"bars\.txt: .*line 2: `long`"):
+        lw.snap(k18, pitches=bars)
+    with pytest.raises(lw.ProblemError, match=r"none\.txt: there is no such file"):
+        lw.snap(k18, pitches=tmp_path / "none.txt")
+    bars.write_text("1\n" * (1 << 20))
+    with pytest.raises(lw.ProblemError, match="more than 1 MB"):
+        lw.snap(k18, pitches=str(bars))
+    for options in ({}, {"grid": 1.0, "pitches": bars}):
+        with pytest.raises(lw.ProblemError, match="give the stock: one of grid, lengths and pitches"):
+            lw.snap(k18, **options)  # type: ignore[arg-type]
+
+
 def test_the_suite_runs() -> None:
     found = lw.suite("a6b", seeds=1)
     assert found.data["seeds"] == 1

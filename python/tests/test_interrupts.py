@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 
 import pytest
@@ -14,13 +15,17 @@ from conftest import ARC, python
 
 import linkwright as lw
 
-#: A problem whose search takes minutes.
+#: The longest life of a child, seconds: it ends by itself if the tests are killed.
+LIFE = 180
+#: A problem whose search takes minutes. The system's own answer to the alarm ends the child, whatever it is doing.
 LONG = textwrap.dedent(
-    """
-    import linkwright as lw, math
+    f"""
+    import linkwright as lw, math, signal
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    signal.alarm({LIFE})
     points = [[math.cos(t) + 0.3 * math.cos(3 * t), math.sin(t) + 0.2 * math.sin(5 * t)]
               for t in (0.1 * i for i in range(60))]
-    problem = lw.path(points, solve={"evaluations": 10**11, "method": "genetic"})
+    problem = lw.path(points, solve={{"evaluations": 10**11, "method": "genetic"}})
     """
 )
 
@@ -31,15 +36,20 @@ def interrupted(code: str, after: float = 1.5, times: int = 1) -> tuple[int, str
         [sys.executable, "-u", "-c", LONG + textwrap.dedent(code)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         text=True,
     )  # fmt: skip
-    assert child.stdout is not None
-    assert child.stdout.readline() == "ready\n"
-    time.sleep(after)
-    begun = time.monotonic()
-    for _ in range(times):
-        os.kill(child.pid, signal.SIGINT)
-        time.sleep(0.05)
-    out, err = child.communicate(timeout=120)
-    return child.returncode, out, err, time.monotonic() - begun
+    try:
+        assert child.stdout is not None
+        assert child.stdout.readline() == "ready\n"
+        time.sleep(after)
+        begun = time.monotonic()
+        for _ in range(times):
+            os.kill(child.pid, signal.SIGINT)
+            time.sleep(0.05)
+        out, err = child.communicate(timeout=120)
+        return child.returncode, out, err, time.monotonic() - begun
+    finally:
+        # However the test ends; a child that has ended is not signalled.
+        child.kill()
+        child.wait()
 
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and forks of POSIX")
@@ -102,13 +112,35 @@ def test_a_handler_of_ones_own_is_obeyed() -> None:
     assert (code, out) == (0, "enough cancelled\n"), err
 
 
+def test_a_child_does_not_outlive_killed_tests_for_long() -> None:
+    life = f"signal.alarm({LIFE})"
+    assert life in LONG
+    code = LONG.replace(life, "signal.alarm(2)") + "lw.synth(problem)"
+    parent = f"import subprocess, sys; child = subprocess.Popen([sys.executable, '-c', {code!r}]); print(child.pid); child.wait()"
+    killed = subprocess.Popen([sys.executable, "-u", "-c", parent], stdout=subprocess.PIPE, text=True)
+    assert killed.stdout is not None
+    # The child holds the pipe's other end: it is at its end when both are gone.
+    child = int(killed.stdout.readline())
+    killed.kill()
+    killed.wait()
+    begun = time.monotonic()
+    timer = threading.Timer(60, os.kill, (child, signal.SIGKILL))
+    timer.start()
+    assert killed.stdout.read() == ""
+    timer.cancel()
+    assert time.monotonic() - begun < 50
+    killed.stdout.close()
+
+
 def test_a_forked_child_searches_with_threads_of_its_own(literature: object) -> None:
     code = f"""
-    import linkwright as lw, os
+    import linkwright as lw, os, signal
+    signal.alarm({LIFE})
     problem = lw.path({ARC})
     alone = lw.synth(problem, threads=2).record_json
     child = os.fork()
     if child == 0:
+        signal.alarm({LIFE})
         same = lw.synth(problem, threads=2).record_json == alone
         os._exit(0 if same else 1)
     _, status = os.waitpid(child, 0)
@@ -121,7 +153,8 @@ def test_a_forked_child_searches_with_threads_of_its_own(literature: object) -> 
 
 def test_children_forked_in_the_middle_of_searches_do_not_hang() -> None:
     code = f"""
-    import linkwright as lw, os, threading
+    import linkwright as lw, os, signal, threading
+    signal.alarm({LIFE})
     problem = lw.path({ARC})
     alone = lw.synth(problem).record_json
     stop = False
@@ -135,6 +168,7 @@ def test_children_forked_in_the_middle_of_searches_do_not_hang() -> None:
     for _ in range(10):
         child = os.fork()
         if child == 0:
+            signal.alarm({LIFE})
             os._exit(0 if lw.synth(problem, threads=2).record_json == alone else 1)
         ends.append(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
     stop = True

@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | [`certificates`] | certificates and the files beside their record: checkpoints and leaves |
 //! | [`cli`] | the command line: arguments, commands, exit codes |
 //! | [`comparison`] | measuring the inputs of a comparison: every figure is computed again, and none is taken from a record unchecked |
 //! | [`inputs`] | inputs of the export, comparison and report commands: a result of a run, one linkage of it, or a linkage without a run |
@@ -11,6 +12,7 @@
 //! | [`suite`] | the suite: benchmark problems whose answer is known, each run from many seeds, and compared with the population searches at equal evaluations and with published answers |
 //! | [`sweep`] | sweeps: a plan of many problems, its shards of jobs, and their merged rows |
 
+pub mod certificates;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod comparison;

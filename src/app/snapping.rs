@@ -1,12 +1,18 @@
-//! The subject of a snap: a linkage with the problem on which it is measured, and the dimensions that stay as they are.
+//! The subject of a snap: a linkage with the problem on which it is measured, the dimensions that stay as they are, and
+//! the stock of a file.
 
 use crate::app::inputs::{Given, NoCandidate};
-use crate::files::diagnostic::escaped;
+use crate::files::diagnostic::{Diagnostic, escaped};
+use crate::files::input_text;
 use crate::mechanism::{FourBar, Unit, xy};
 use crate::record::{Candidate, ProblemRecord};
 use crate::report::text::clean;
-use crate::synthesis::snap::{Fixed, Length, own_curve};
+use crate::synthesis::snap::{Fixed, Length, Stock, own_curve};
 use crate::task::{Problem, TaskError};
+use std::path::Path;
+
+/// The longest text of a list of pitches, in bytes.
+const MAX_PITCHES: u64 = 1 << 20;
 
 /// The linkage to snap, with its problem.
 #[derive(Clone, Debug)]
@@ -91,4 +97,16 @@ pub fn fixed(linkage: &FourBar, keep: &[String], set: &[(String, f64)]) -> Fixed
         }
     }
     fixed
+}
+
+/// Reads a stock from a text file: its lengths, one a line or separated by commas.
+///
+/// # Errors
+/// A diagnostic about the file: it cannot be read, is too large, or holds something that is no length.
+pub fn pitches(path: &Path) -> Result<Stock, Box<Diagnostic>> {
+    let refused = |why: String| Box::new(Diagnostic::new(path.display().to_string(), "", why));
+    if std::fs::metadata(path).is_ok_and(|found| found.len() > MAX_PITCHES) {
+        return Err(refused("a list of lengths of more than 1 MB is refused".to_owned()));
+    }
+    Stock::parse(&input_text::read(path)?).map_err(|why| refused(why.to_string()))
 }

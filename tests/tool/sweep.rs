@@ -199,6 +199,125 @@ fn a_killed_run_loses_no_shard_and_leaves_no_half_of_one() {
     assert!(merged(&out) == merged(&first));
 }
 
+/// Shuffles by draws that a seed decides.
+fn shuffled<T>(mut items: Vec<T>, seed: u64) -> Vec<T> {
+    let mut random = stream(seed, 11);
+    for i in (1..items.len()).rev() {
+        items.swap(i, (unit(&mut random) * (i + 1) as f64) as usize);
+    }
+    items
+}
+
+/// Runs commands, three of them at a time; all succeed.
+fn three_at_a_time(mut commands: Vec<Command>) {
+    for commands in commands.chunks_mut(3) {
+        let begin = |command: &mut Command| command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+        let children: Vec<_> = commands.iter_mut().map(|command| begin(command).expect("it runs")).collect();
+        for child in children {
+            let output = child.wait_with_output().expect("it ends");
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        }
+    }
+}
+
+#[test]
+fn shards_run_by_processes_of_their_own_have_the_bytes_of_one_process() {
+    let folder = folder(SWEEP);
+    let at = folder.path();
+    let first = planned(at, "first");
+    run_missing(&first, &how(1, &NEVER)).expect("it runs");
+    merge(&first).expect("it merges");
+    for seed in 0..3 {
+        let name = format!("out{seed}");
+        let out = planned(at, &name);
+        // Each shard once, three of them twice, and one that begins twice at the same time.
+        let mut shards = shuffled((0..7).chain([0, 3, 6]).collect(), seed);
+        shards.splice(0..0, [5, 5]);
+        let run = |shard: &u64| {
+            let shard = shard.to_string();
+            command(at, &["sweep", "run", &name, "--shard", &shard, "--threads", "1", "--quiet"])
+        };
+        three_at_a_time(shards.iter().map(run).collect());
+        succeeds(at, &["sweep", "merge", &name]);
+        assert!(merged(&out) == merged(&first), "{shards:?}");
+        for shard in 0..7 {
+            let file = format!("shards/{shard}.jsonl");
+            assert_eq!(read(out.join(&file)), read(first.join(&file)), "{shards:?}");
+        }
+        assert_eq!(fs::read_dir(out.join("shards")).expect("a folder").count(), 7, "{shards:?}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn the_job_array_of_the_document_runs_every_shard() {
+    let document = read(root().join("docs/python.md"));
+    let (_, recipe) = document.split_once("```bash\n#!/bin/bash\n#SBATCH --array").expect("the recipe");
+    let (recipe, _) = recipe.split_once("```").expect("its end");
+    let folder = folder(SWEEP);
+    let at = folder.path();
+    let (first, out) = (planned(at, "first"), planned(at, "out"));
+    run_missing(&first, &how(1, &NEVER)).expect("it runs");
+    merge(&first).expect("it merges");
+    let place = out.display().to_string();
+    let script = format!("set -e\n#{recipe}").replace("/shared/me/sweep", &place).replace("1000", "4");
+    assert!(script.contains(&format!("{place}/plan.json")) && script.contains("i += 4"), "{script}");
+    let program = assert_cmd::cargo::cargo_bin("linkwright");
+    let beside = program.parent().expect("a folder").to_path_buf();
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    let paths = std::env::join_paths(std::iter::once(beside).chain(std::env::split_paths(&paths)));
+    let paths = paths.expect("a list of folders");
+    let task = |number: u64| {
+        let mut task = Command::new("bash");
+        task.args(["-c", &script]).env("PATH", &paths).env("SLURM_ARRAY_TASK_ID", number.to_string());
+        task
+    };
+    three_at_a_time(vec![task(3), task(1)]);
+    let (code, _, stderr) = linkwright(at, &["sweep", "merge", "out"]);
+    assert!(code == 2 && stderr.contains("of 7 shards are missing"), "{stderr}");
+    three_at_a_time([2, 0, 3, 1].map(task).into());
+    succeeds(at, &["sweep", "merge", "out"]);
+    assert!(merged(&out) == merged(&first));
+}
+
+#[test]
+fn half_written_files_of_killed_processes_are_removed_when_they_are_old() {
+    let folder = folder(SWEEP);
+    let at = folder.path();
+    let out = planned(at, "out");
+    run_missing(&out, &how(2, &NEVER)).expect("it runs");
+    merge(&out).expect("it merges");
+    let wanted = merged(&out);
+    let hour = Duration::from_secs(3600);
+    let aged = |name: &str, age: Duration| {
+        let path = out.join(name);
+        fs::write(&path, "half a sh").expect("written");
+        let file = fs::File::options().write(true).open(&path).expect("opened");
+        file.set_modified(std::time::SystemTime::now() - age).expect("aged");
+        path
+    };
+    let gone = [aged("shards/.linkwright-a1B2c3", 25 * hour), aged(".linkwright-Zz09yX", 300 * hour)];
+    let kept = [
+        aged("shards/.linkwright-a1B2c4", 23 * hour),
+        aged("shards/.linkwright-fresh0", Duration::ZERO),
+        aged("shards/.linkwright-longer-name", 300 * hour),
+        aged("shards/notes.txt", 300 * hour),
+    ];
+    // A file that another machine is writing, or that nobody will, hinders no run.
+    let ran = run_missing(&out, &how(1, &NEVER)).expect("it runs");
+    assert_eq!((ran.before, ran.rows, ran.done.len()), (7, 20, 0));
+    // While shards are missing, all stays.
+    let shard = fs::read(out.join("shards/4.jsonl")).expect("a shard");
+    fs::remove_file(out.join("shards/4.jsonl")).expect("removed");
+    assert!(matches!(merge(&out), Err(SweepError::Missing { .. })));
+    assert!(gone.iter().all(|path| path.exists()));
+    fs::write(out.join("shards/4.jsonl"), shard).expect("written");
+    merge(&out).expect("it merges");
+    assert!(gone.iter().all(|path| !path.exists()));
+    assert!(kept.iter().all(|path| path.exists()));
+    assert!(merged(&out) == wanted);
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_complete_shards_and_the_next_run_goes_on() {

@@ -3,19 +3,16 @@
 use super::arguments::Certify;
 use super::progress::Shown;
 use super::result;
-use super::{Ended, interrupt, refuse, refuse_io, refuse_path, terminal};
+use super::{Ended, interrupt, refuse, refuse_path, terminal};
+use crate::app::certificates;
 use crate::app::job::files;
 use crate::app::job::files::Timing;
-use crate::app::job::folder::{
-    CERTIFICATE_CHECKPOINT, LEAVES, RECORD, ResultsFolder, read_at_most, replace_file,
-};
+use crate::app::job::folder::{CERTIFICATE_CHECKPOINT, LEAVES, RECORD, ResultsFolder, replace_file};
 use crate::app::job::save::SaveError;
-use crate::judge::certificate::checkpoint::{MAX_BYTES, REMEDY};
-use crate::judge::certificate::{Proof, Request, ResumeError};
-use crate::record::{Certificate, Record};
+use crate::judge::certificate::{Proof, ResumeError};
+use crate::record::Record;
 use crate::report::certificate::{certificate_text, parts_text, repeats_text};
 use crate::task::spec::CertifySpec;
-use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -39,26 +36,23 @@ pub fn run(options: &Certify) -> Result<Ended, Ended> {
     // be written to is reported at once.
     let mut folder = ResultsFolder::take(&options.result).map_err(refuse)?;
     let mut record = result::read_run_of(&options.result, "certify")?.record;
-    let former = record.certificate.take();
     let cancel = interrupt::watch("keeping what is proved by now");
     let mut proof = begin(options, &record)?;
     prove(options, &mut proof, &record.problem.name, begun, cancel);
-    let leaves = proof.leaves();
-    let certificate = proof.certificate_of(&leaves);
-    let proved = |certificate: &Certificate| (certificate.lower_bound, certificate.boxes);
-    if let Some(stronger) = former.filter(|former| proved(former) > proved(&certificate)) {
-        record.certificate = Some(stronger);
-        tell_of(options, "its certificate proves more than this run: it stays as it is");
-        if !proof.ended() {
-            replace_file(&options.result, CERTIFICATE_CHECKPOINT, &proof.checkpoint()).map_err(refuse)?;
+    match certificates::put(&mut record, &proof) {
+        None => {
+            tell_of(options, "its certificate proves more than this run: it stays as it is");
+            if !proof.ended() {
+                replace_file(&options.result, CERTIFICATE_CHECKPOINT, &proof.checkpoint()).map_err(refuse)?;
+            }
         }
-    } else {
-        record.certificate = Some(certificate);
-        let files = files(options, &record, begun, &proof, leaves.to_bytes())?;
-        if folder.has_checkpoint() {
-            folder.keep_checkpoint();
+        Some(leaves) => {
+            let files = files(options, &record, begun, &proof, leaves.to_bytes())?;
+            if folder.has_checkpoint() {
+                folder.keep_checkpoint();
+            }
+            folder.replace(&files).map_err(|e| refuse(SaveError::rescued(e, &files)))?;
         }
-        folder.replace(&files).map_err(|e| refuse(SaveError::rescued(e, &files)))?;
     }
     let Some(certificate) = &record.certificate else { return Err(Ended::Bad) };
     terminal::answer(certificate_text(&record, terminal::colour()).trim_start_matches('\n'));
@@ -79,11 +73,7 @@ fn tell_of(options: &Certify, text: &str) {
 /// Begins the proof, or takes it up where a run was stopped. If nothing can be proved, the forecast of the search itself
 /// is shown.
 fn begin(options: &Certify, record: &Record) -> Result<Proof, Ended> {
-    let request = Request { gap: options.gap };
-    let proof = match kept(options)? {
-        Some(bytes) => Proof::resume(record, &request, &bytes),
-        None => Proof::new(record, &request).map_err(ResumeError::from),
-    };
+    let proof = certificates::begin(record, options.gap, kept(options)?.as_deref());
     proof.map_err(|e| match e {
         ResumeError::NoCertificate(e) => {
             if let Some(repeats) = &record.repeats {
@@ -91,7 +81,7 @@ fn begin(options: &Certify, record: &Record) -> Result<Proof, Ended> {
             }
             refuse_path(&options.result, e)
         }
-        e => refuse_path(&options.result.join(CERTIFICATE_CHECKPOINT), e),
+        e => refuse_path(&certificates::checkpoint_of(&options.result), e),
     })
 }
 
@@ -121,18 +111,11 @@ fn kept(options: &Certify) -> Result<Option<Vec<u8>>, Ended> {
     if !options.resume {
         return Ok(None);
     }
-    let place = options.result.join(CERTIFICATE_CHECKPOINT);
-    match read_at_most(&place, MAX_BYTES) {
-        Ok(Some(bytes)) => Ok(Some(bytes)),
-        Ok(None) => Err(refuse_path(&place, format!("it has at most {MAX_BYTES} bytes; {REMEDY}"))),
-        Err(e) if e.kind() == io::ErrorKind::NotFound => {
-            if !options.quiet {
-                tell_of(options, "no run of certify was stopped here: it begins anew");
-            }
-            Ok(None)
-        }
-        Err(e) => Err(refuse_io(&place, e)),
+    let found = certificates::read_checkpoint(&options.result).map_err(refuse)?;
+    if found.is_none() && !options.quiet {
+        tell_of(options, "no run of certify was stopped here: it begins anew");
     }
+    Ok(found)
 }
 
 /// The files of the result with the certificate, its leaves if they are wanted, and its checkpoint if it can go on; the

@@ -4,13 +4,11 @@ use super::arguments::Snap as Options;
 use super::inputs::RESULTS;
 use super::output::Output;
 use super::result;
-use super::{Ended, build, interrupt, refuse, refuse_at, refuse_path, terminal};
+use super::{Ended, build, interrupt, refuse, refuse_at, terminal};
 use crate::app::job::files::{Timing, files};
 use crate::app::job::folder::ResultsFolder;
-use crate::app::snapping::{NoSubject, Subject, fixed};
-use crate::files::diagnostic::Diagnostic;
+use crate::app::snapping::{NoSubject, Subject, fixed, pitches};
 use crate::files::generator::FileKind;
-use crate::files::input_text;
 use crate::files::linkage_file;
 use crate::files::name;
 use crate::judge::practicality::{Build, Practicality};
@@ -22,8 +20,6 @@ use crate::synthesis::{Budget, Context};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// The longest text of a list of pitches.
-const MAX_PITCHES: u64 = 1 << 20;
 /// The ending of the name of a snapped linkage.
 const SUFFIX: &str = "-snapped";
 
@@ -83,14 +79,7 @@ fn stock(options: &Options) -> Result<Stock, Ended> {
     match (options.grid, &options.lengths, &options.pitches) {
         (Some(step), ..) => Stock::grid(step).map_err(refuse),
         (_, Some(lengths), _) => Stock::list(lengths).map_err(refuse),
-        (.., Some(path)) if std::fs::metadata(path).is_ok_and(|found| found.len() > MAX_PITCHES) => {
-            Err(refuse_path(path, "a list of lengths of more than 1 MB is refused"))
-        }
-        (.., Some(path)) => {
-            let text = input_text::read(path).map_err(refuse_at)?;
-            let file = path.display().to_string();
-            Stock::parse(&text).map_err(|e| refuse_at(Box::new(Diagnostic::new(file, "", e.to_string()))))
-        }
+        (.., Some(path)) => pitches(path).map_err(refuse_at),
         _ => Err(refuse("give --grid, --lengths or --pitches")),
     }
 }

@@ -4,16 +4,14 @@ use super::arguments::Verify;
 use super::progress::Shown;
 use super::result;
 use super::result::Which;
-use super::{Ended, interrupt, refuse_io, refuse_path, terminal};
-use crate::app::job::folder::{LEAVES, read_at_most};
+use super::{Ended, interrupt, refuse, refuse_path, terminal};
+use crate::app::certificates;
 use crate::files::diagnostic::escaped;
-use crate::judge::certificate::{CheckError, Checked as CheckedLeaves, check};
+use crate::judge::certificate::{CheckError, Checked as CheckedLeaves};
 use crate::judge::verify::{Checked, Mismatch, unchecked, verify_certificate};
-use crate::numbers::leaves::{LeavesError, MAX_BYTES};
 use crate::record::Record;
 use crate::report::text::{COLUMNS, plural, wrapped};
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Runs the command: every record is looked at, whatever is wrong with those before it, and the gravest end is that of
 /// all. Ctrl-C ends it.
@@ -54,7 +52,7 @@ fn one(path: &Path, options: &Verify) -> Result<Ended, Ended> {
         terminal::answer(&format!("  {}\n", escaped(&mismatch.to_string())));
     }
     if let Some(why) = wrong {
-        let leaves = terminal::shown(&leaves_of(path));
+        let leaves = terminal::shown(&certificates::leaves_of(path));
         terminal::answer(&format!("  {leaves}: {}\n", escaped(&why.to_string())));
     }
     Ok(Ended::Bad)
@@ -122,30 +120,14 @@ fn limits_of(record: &Record, options: &Verify) -> String {
     text
 }
 
-/// The file of leaves beside a record.
-fn leaves_of(path: &Path) -> PathBuf {
-    if path.is_dir() { path.join(LEAVES) } else { path.with_file_name(LEAVES) }
-}
-
 /// Checks the leaves of a record's certificate, which are beside it; the inner error is that they do not prove it.
 fn check_leaves(path: &Path, record: &Record) -> Result<Result<CheckedLeaves, CheckError>, Ended> {
-    let no_certificate =
-        || refuse_path(path, "the record has no certificate; run certify with --leaves first");
-    let recorded = record.certificate.as_ref().ok_or_else(no_certificate)?;
-    let file = leaves_of(path);
-    let read = read_at_most(&file, MAX_BYTES).map_err(|e| match e.kind() {
-        io::ErrorKind::NotFound => refuse_path(&file, "there are no leaves; run certify with --leaves first"),
-        _ => refuse_io(&file, e),
-    })?;
-    let too_large = || refuse_path(&file, format!("leaves have at most {MAX_BYTES} bytes"));
-    let bytes = read.ok_or_else(too_large)?;
+    certificates::certificate_of(path, record).map_err(refuse)?;
+    let bytes = certificates::read_leaves(path).map_err(refuse)?;
     let cancel = interrupt::watch("ending the check");
-    let (progress, named) = (Shown::of_proof("", false), terminal::shown(&file));
-    match check(record, recorded, &bytes, cancel, &mut |checked| progress.leaves(&named, checked.leaves)) {
-        Err(CheckError::NoCertificate(e)) => Err(refuse_path(path, e)),
-        Err(CheckError::Leaves(e @ (LeavesError::Foreign | LeavesError::Version { .. }))) => {
-            Err(refuse_path(&file, e))
-        }
+    let (progress, named) = (Shown::of_proof("", false), terminal::shown(&certificates::leaves_of(path)));
+    let told = &mut |checked: &CheckedLeaves| progress.leaves(&named, checked.leaves);
+    match certificates::check_leaves(path, record, &bytes, cancel, told).map_err(refuse)? {
         Err(CheckError::Stopped) => Err(Ended::Interrupted),
         checked => Ok(checked),
     }

@@ -2,7 +2,7 @@
 
 use super::error::SweepError;
 use super::plan::{MERGED, open};
-use super::shard::Reader;
+use super::shard::{Reader, remove_abandoned};
 use crate::app::job::folder::Replacement;
 use crate::record::sweep::{Plan, Row, Status};
 use crate::report::sweep::page::sweep_html;
@@ -10,6 +10,7 @@ use crate::report::sweep::plot::plot_svg;
 use crate::report::sweep::summary::Summary;
 use crate::report::sweep::table::{head, line_of};
 use serde::de::IgnoredAny;
+use std::fs;
 use std::path::Path;
 
 /// The most missing shards that are named.
@@ -29,7 +30,7 @@ pub struct Merged {
 }
 
 /// Merges the shards of a folder into `sweep.csv` and `sweep.jsonl`, a row for each job by number, with a plot and a page
-/// (`sweep.svg`, `sweep.html`).
+/// (`sweep.svg`, `sweep.html`). Half-written files that killed processes left a day ago or earlier are removed.
 ///
 /// # Errors
 /// [`SweepError::Missing`] if shards are missing; [`SweepError::OtherPlan`] and [`SweepError::Damaged`] name a shard that
@@ -63,6 +64,9 @@ pub fn merge(folder: &Path) -> Result<Merged, SweepError> {
         let mut file = Replacement::begin(&path)?;
         file.write(text.as_bytes())?;
         file.finish()?;
+    }
+    if let Ok(now) = fs::metadata(folder.join(MERGED[0])).and_then(|found| found.modified()) {
+        remove_abandoned(folder, now);
     }
     Ok(Merged {
         rows: summary.rows,

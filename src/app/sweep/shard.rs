@@ -4,7 +4,7 @@
 //! lines after it: one row for each job, by number.
 
 use super::SweepError;
-use crate::app::job::folder::{FolderError, Replacement};
+use crate::app::job::folder::{FolderError, Replacement, is_temporary};
 use crate::record::digest::hex;
 use crate::record::sweep::{FORMAT, Plan};
 use serde::{Deserialize, Serialize};
@@ -12,6 +12,10 @@ use sha2::{Digest, Sha256};
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+/// The age from which nobody is writing a half-written file any more.
+const ABANDONED: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// The folder of the shards in the folder of a sweep.
 pub const SHARDS: &str = "shards";
@@ -186,6 +190,25 @@ pub fn find(folder: &Path, plan: &Plan, shard: u64) -> Result<Option<ShardDone>,
     match read() {
         Err(SweepError::Damaged { .. }) => Ok(None),
         other => other,
+    }
+}
+
+/// Removes the half-written files that processes which were killed have left in the folder of a sweep and among its shards.
+///
+/// `now` is the time by the clock of their file system, whatever that of this machine is: of a file that was just written
+/// there. Other machines may be writing shards meanwhile, each within moments, so younger files stay.
+pub(super) fn remove_abandoned(folder: &Path, now: SystemTime) {
+    for place in [folder.to_path_buf(), folder.join(SHARDS)] {
+        let Ok(entries) = fs::read_dir(place) else { continue };
+        for entry in entries.flatten() {
+            let Ok(found) = entry.metadata() else { continue };
+            let age = found.modified().ok().and_then(|written| now.duration_since(written).ok());
+            let ours = found.is_file() && is_temporary(&entry.file_name().to_string_lossy());
+            if ours && age.is_some_and(|age| age >= ABANDONED) {
+                // One that stays, because it is another user's, is in nobody's way.
+                let _ = fs::remove_file(entry.path());
+            }
+        }
     }
 }
 
