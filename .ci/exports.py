@@ -104,6 +104,10 @@ def check_dxf(path):
         auditor = document.audit()
         assert not auditor.errors and not auditor.fixes, (file, auditor.errors, auditor.fixes)
         assert document.units == ezdxf.units.MM
+        box = bbox.extents(document.modelspace(), fast=False)
+        # ezdxf's boxes of arcs are those of polygons.
+        for told, drawn in ((document.header["$EXTMIN"], box.extmin), (document.header["$EXTMAX"], box.extmax)):
+            assert max(abs(told[0] - drawn.x), abs(told[1] - drawn.y)) < 2e-2, (file, told, drawn)
         return document.modelspace()
 
     # A crank angle that is asked for, so that the joints are known.

@@ -3,7 +3,7 @@
 //! Source of the group codes: Autodesk, "AutoCAD 2000 DXF Reference" (1999). Lengths are millimetres
 //! (`$INSUNITS` = 4); text is ASCII, other characters as `\U+XXXX`.
 
-use crate::mechanism::Complex;
+use crate::mechanism::{Complex, cross};
 use crate::report::scene::Bounds;
 use std::fmt::{Display, Write};
 
@@ -132,11 +132,13 @@ impl Drawing {
         self.entity("LWPOLYLINE", layer, "AcDbPolyline");
         self.entities.text(90, vertices.len());
         self.entities.text(70, u8::from(closed));
-        for (at, bulge) in vertices {
+        let after = vertices.iter().cycle().skip(1);
+        for ((at, bulge), (next, _)) in vertices.iter().zip(after) {
             self.entities.number(10, at.re);
             self.entities.number(20, at.im);
             if *bulge != 0.0 {
                 self.entities.number(42, *bulge);
+                farthest_of_arc(*at, *next, *bulge).for_each(|p| self.bounds.hold(p));
             }
             self.bounds.hold(*at);
         }
@@ -254,6 +256,18 @@ fn objects(out: &mut Tags) {
     out.text(100, "AcDbDictionaryWithDefault");
     out.handle(340, 0xF);
     out.object("ACDBPLACEHOLDER", 0xF, 0xE);
+}
+
+/// Computes the leftmost, rightmost, lowest and highest points of an arc's circle that lie on the arc; a positive bulge
+/// (the tangent of a quarter of the turn) turns counter-clockwise.
+fn farthest_of_arc(from: Complex, to: Complex, bulge: f64) -> impl Iterator<Item = Complex> {
+    let chord = to - from;
+    let centre = 0.5 * (from + to) + Complex::i() * chord * ((1.0 - bulge * bulge) / (4.0 * bulge));
+    let radius = chord.norm() * (1.0 + bulge * bulge) / (4.0 * bulge.abs());
+    let all = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
+    let all = all.map(|(x, y)| centre + radius * Complex::new(x, y));
+    // The arc lies to the right of its chord where it turns counter-clockwise, otherwise to the left.
+    all.into_iter().filter(move |p| cross(chord, p - from) * bulge < 0.0)
 }
 
 /// Returns text on one line as DXF of 2000 writes it: printable ASCII, everything else as UTF-16 units `\U+XXXX`.

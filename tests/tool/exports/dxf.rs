@@ -39,6 +39,19 @@ fn values(entity: &[(u16, String)], code: u16) -> Vec<f64> {
     entity.iter().filter(|(c, _)| *c == code).map(|(_, v)| v.parse().expect("a number")).collect()
 }
 
+/// The bulge after each vertex of a polyline.
+fn bulges(polyline: &[(u16, String)]) -> Vec<f64> {
+    let mut bulges: Vec<f64> = Vec::new();
+    for (code, value) in polyline {
+        match code {
+            10 => bulges.push(0.0),
+            42 => *bulges.last_mut().expect("a vertex") = value.parse().expect("a number"),
+            _ => {}
+        }
+    }
+    bulges
+}
+
 #[test]
 fn dxf_numbers_read_back_to_the_same_digits_on_named_layers() {
     for subject in subjects() {
@@ -111,15 +124,7 @@ fn dxf_plates_are_closed_contours_moved_by_half_the_kerf() {
                 assert!(circles.iter().all(|c| (values(c, 40)[0] - (0.25 - half)).abs() < 1e-12));
                 // The area by the polygon and the segments of its arcs, bulge = tan(turn/4).
                 let (xs, ys) = (values(contours[0], 10), values(contours[0], 20));
-                let mut bulges = vec![0.0_f64; xs.len()];
-                let mut vertex = 0;
-                for (code, value) in contours[0] {
-                    match code {
-                        10 => vertex += 1,
-                        42 => bulges[vertex - 1] = value.parse().expect("a number"),
-                        _ => {}
-                    }
-                }
+                let bulges = bulges(contours[0]);
                 let n = xs.len();
                 let area: f64 = (0..n)
                     .map(|i| {
@@ -142,6 +147,69 @@ fn dxf_plates_are_closed_contours_moved_by_half_the_kerf() {
             // One above the other, apart by the gap (vertices of arcs lie inside of their boxes by at most the radius).
             for pair in boxes.windows(2) {
                 assert!(pair[1][1] - pair[0][3] >= 3.0 - 1e-9, "{boxes:?}");
+            }
+        }
+    }
+}
+
+/// The box of all entities, by points on them: a polyline's arcs in a thousand parts.
+fn extents(dxf: &str) -> [f64; 4] {
+    let mut found = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+    let mut hold = |x: f64, y: f64| {
+        found = [found[0].min(x), found[1].min(y), found[2].max(x), found[3].max(y)];
+    };
+    for (kind, _, tags) in entities(dxf) {
+        let (xs, ys) = (values(&tags, 10), values(&tags, 20));
+        match kind.as_str() {
+            "CIRCLE" => {
+                let radius = values(&tags, 40)[0];
+                hold(xs[0] - radius, ys[0] - radius);
+                hold(xs[0] + radius, ys[0] + radius);
+            }
+            "LINE" => {
+                hold(xs[0], ys[0]);
+                hold(values(&tags, 11)[0], values(&tags, 21)[0]);
+            }
+            "LWPOLYLINE" => {
+                let bulges = bulges(&tags);
+                for i in 0..xs.len() {
+                    let j = (i + 1) % xs.len();
+                    let (across, along) = ([xs[j] - xs[i], ys[j] - ys[i]], 1000);
+                    for k in 0..=along {
+                        // A point of the arc sees its chord's ends under angles that share half of its turn.
+                        let (half, part) = (2.0 * bulges[i].atan(), f64::from(k) / f64::from(along));
+                        let reach = if half == 0.0 { part } else { (half * part).sin() / half.sin() };
+                        let (sin, cos) = (-half * (1.0 - part)).sin_cos();
+                        hold(
+                            xs[i] + reach * (across[0] * cos - across[1] * sin),
+                            ys[i] + reach * (across[0] * sin + across[1] * cos),
+                        );
+                    }
+                }
+            }
+            _ => hold(xs[0], ys[0]),
+        }
+    }
+    found
+}
+
+#[test]
+fn dxf_headers_tell_the_extents_of_all_entities_with_their_arcs() {
+    for subject in subjects() {
+        for (format, kerf) in
+            [(Format::Dxf, None), (Format::DxfPlates, Some("0")), (Format::DxfPlates, Some("0.15"))]
+        {
+            let set =
+                kerf.map_or(vec![], |kerf| vec![("kerf_mm", kerf), ("hole_mm", "0.5"), ("margin_mm", "1")]);
+            let dxf = text(&subject, format, &set);
+            let tags = tags(&dxf);
+            let header = |name: &str| -> [f64; 2] {
+                let at = tags.iter().position(|t| *t == (9, name.to_owned())).expect("it is in the header");
+                [&tags[at + 1], &tags[at + 2]].map(|(_, value)| value.parse().expect("a number"))
+            };
+            let ([left, low], [right, high]) = (header("$EXTMIN"), header("$EXTMAX"));
+            for (told, drawn) in [left, low, right, high].into_iter().zip(extents(&dxf)) {
+                assert!((told - drawn).abs() < 1e-5 * (right - left), "{format:?}: {told} {drawn}");
             }
         }
     }
