@@ -173,7 +173,7 @@ impl<'a> Model<'a> {
     }
 
     /// Returns the four plates in their final sizes, each with its place in the layout (with room for the kerf): one
-    /// below another, on a sheet in as many columns as that takes.
+    /// below another, on a sheet in as many columns as that takes. The tool's paths begin at the sheet's corner.
     pub(super) fn plates(&self) -> Result<Vec<(Plate, Placement)>, Refusal> {
         let (nearest, crowd) = nearest_holes(&self.linkage);
         if self.hole >= nearest {
@@ -191,14 +191,16 @@ impl<'a> Model<'a> {
             None => in_columns(&sizes, self.gap, f64::INFINITY),
             Some([width, height]) => self.on_sheet(&sizes, Complex::new(width, height))?,
         };
+        let rim = 0.5 * Complex::new(self.kerf, self.kerf);
         let placed = plates.into_iter().zip(corners).map(|(plate, corner)| {
-            let origin = corner - plate.bounds()[0];
+            let origin = corner + rim - plate.bounds()[0];
             (plate, Placement { origin, ..Placement::HOME })
         });
         Ok(placed.collect())
     }
 
-    /// Returns the lower left corners of plates of these sizes on a sheet, whose rim the tool may cut.
+    /// Returns the lower left corners of plates of these sizes on a sheet whose rim the tool may cut, from the corner of
+    /// the room that the kerf leaves.
     fn on_sheet(&self, sizes: &[Complex], sheet: Complex) -> Result<Vec<Complex>, Refusal> {
         let room = sheet - Complex::new(self.kerf, self.kerf);
         // Columns as high as one plate, two plates, ..
@@ -219,8 +221,7 @@ impl<'a> Model<'a> {
         let best = laid_out.min_by(|one, other| one.0.total_cmp(&other.0));
         let Some((part, needed, corners)) = best else { return Ok(Vec::new()) };
         if part <= 1.0 && room.re > 0.0 && room.im > 0.0 {
-            let rim = 0.5 * Complex::new(self.kerf, self.kerf);
-            return Ok(corners.into_iter().map(|corner| corner + rim).collect());
+            return Ok(corners);
         }
         let [wide, high] = [needed.re, needed.im].map(|side| exact((side + self.kerf).ceil()));
         Err(Refusal::about(

@@ -208,6 +208,9 @@ fn dxf_headers_tell_the_extents_of_all_entities_with_their_arcs() {
                 [&tags[at + 1], &tags[at + 2]].map(|(_, value)| value.parse().expect("a number"))
             };
             let ([left, low], [right, high]) = (header("$EXTMIN"), header("$EXTMAX"));
+            if format == Format::DxfPlates {
+                assert!(left >= -1e-9 && low >= -1e-9 && left.max(low) < 1e-9, "{left} {low}");
+            }
             for (told, drawn) in [left, low, right, high].into_iter().zip(extents(&dxf)) {
                 assert!((told - drawn).abs() < 1e-5 * (right - left), "{format:?}: {told} {drawn}");
             }
