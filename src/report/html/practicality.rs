@@ -52,7 +52,7 @@ fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<Markup> 
         h3 { (title) }
         (paragraph("", &words.made(&found)))
         @match &found.layering {
-            Some(layering) => (list(words.layers(layering))),
+            Some(layering) => (list(words.layers(&found, layering))),
             None => (paragraph("bad", "The loop is open somewhere in the motion.")),
         }
         @if let Some(distances) = &found.distances { (joints(distances, hole)) }
