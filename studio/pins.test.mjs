@@ -143,6 +143,57 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   await end();
 });
 
+test("a pin of another path says so and is not praised; the drawing made larger makes its pins larger", async () => {
+  const { page, said: console_, context, end } = await begun();
+  await doing(page, "done");
+  await button(page, "Pin linkage 1").click();
+  const card = page.locator(".pick", { hasText: "Pinned 1" });
+  await card.click();
+  const verdict = () => card.locator(".verdict").textContent();
+  const rms = async () => Number((await card.textContent()).match(/rms ([\d.]+)/)[1]);
+  const praise = () => card.locator(".good").count();
+  const [met, near, praised] = [await verdict(), await rms(), await praise()];
+  assert.match(met, /^meets/);
+  assert.ok(praised > 0);
+  const width = page.locator("#path-width");
+  const before = Number(await width.inputValue());
+  // Twice as wide: so is the pinned linkage, here and a step back and forth.
+  await width.fill(String(2 * before));
+  await page.keyboard.press("Tab");
+  await doing(page, "done");
+  assert.deepEqual([await verdict(), await praise()], [met, praised]);
+  assert.ok(Math.abs((await rms()) / near - 2) < 0.02, `${await rms()} of ${near}`);
+  const large = await linkage(page);
+  await button(page, "Undo").click();
+  await doing(page, "done");
+  assert.deepEqual([await verdict(), await rms()], [met, near]);
+  const small = await linkage(page);
+  assert.ok(
+    large.every((x, i) => Math.abs(x - 2 * small[i]) < 0.03 || x === small[i]),
+    `${large} of ${small}`,
+  );
+  assert.equal(await page.locator("#elsewhere").textContent(), "");
+  // Another path, other wishes.
+  await example(page, 6);
+  await doing(page, "done");
+  await card.click();
+  assert.deepEqual([await verdict(), await praise()], ["pinned for another path", 0]);
+  await page.waitForFunction(() => /pinned for another path/.test(document.querySelector("#elsewhere").textContent));
+  assert.match(await card.locator(".quality").textContent(), /% of its path.*× its path/);
+  await shot(page, "pinned-for-another");
+  await button(page, "Undo").click();
+  await doing(page, "done");
+  assert.deepEqual([await verdict(), await praise()], [met, praised]);
+  await tab(page, "wishes");
+  await page.locator("#transmission").fill("12");
+  await page.keyboard.press("Tab");
+  await doing(page, "done");
+  assert.deepEqual([await verdict(), await praise()], ["pinned with other wishes", 0]);
+  assert.deepEqual(console_, []);
+  await context.close();
+  await end();
+});
+
 test("the details say whether they are of what stands, and what they save is what they show", async () => {
   const { page, said: console_, context, end } = await begun();
   await doing(page, "done");

@@ -4,6 +4,7 @@
 import { element } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
+import { pinnedFor } from "./task";
 
 /** Sizes: the setting of the studio, its label, and what stands in an empty field. */
 const SIZES: [string, string, string][] = [
@@ -36,6 +37,8 @@ export class BuildPanel {
     "These are the plates of one leg: cut them once for each leg.",
   ]);
   private nothing = element("p", { class: "note" }, ["Draw a path first: its linkage is built here."]);
+  /** That it was found for something else than what is drawn. */
+  private elsewhere = element("p", { class: "note", id: "elsewhere" });
   private timer = 0;
   private isOpen = false;
   private shownOf = "";
@@ -73,7 +76,7 @@ export class BuildPanel {
       this.fault,
       this.plates,
       this.legs,
-      element("div", { class: "row" }, [this.dxf, this.save]),
+      element("div", { class: "row" }, [this.dxf, this.save, this.elsewhere]),
       element("details", { open: "" }, [element("summary", {}, ["Layers and clearances"]), this.layers]),
     );
     const sizes = ["hole_mm", "margin_mm", "kerf_mm", "sheet_mm"];
@@ -112,6 +115,9 @@ export class BuildPanel {
     for (const part of [this.plates, this.dxf, this.save, this.layers.parentElement as HTMLElement])
       part.hidden = !chosen;
     this.nothing.hidden = chosen !== null;
+    const elsewhere = chosen ? pinnedFor(chosen.task, this.host.task()) : "";
+    this.elsewhere.textContent =
+      elsewhere && `This linkage is ${elsewhere}: these plates are not for the present drawing.`;
     if (!chosen) return;
     const [of, set] = [api.drawn(chosen), this.set()];
     const key = JSON.stringify([of, set]);

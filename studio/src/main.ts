@@ -47,6 +47,7 @@ interface State {
   chosen: { pin: number } | { candidate: number } | null;
   byHand: Shown | null;
   isWalker: boolean;
+  lengths: number;
 }
 
 /** Milliseconds after which a view that rests is remembered. */
@@ -69,6 +70,8 @@ class Page {
   /** Whether the linkage moved when it was taken into the hand. */
   private wasPlaying = false;
   private begunWith = "null";
+  /** How many times as long as at first all lengths have been made. */
+  private lengths = 1;
   private filling: ReturnType<typeof setTimeout> | undefined;
   private looking: ReturnType<typeof setTimeout> | undefined;
   /** What the page has written among the coordinates; anything else is the user's, until it is taken. */
@@ -322,7 +325,14 @@ class Page {
     this.store.note();
     if (this.underlay.placed) this.underlay.lengthsTimes(by);
     this.board.look(rescaled(this.board.looking, by));
+    this.makeLengths(this.lengths * by);
     this.put(tasks.withLengthsTimes(this.task, by), {});
+  }
+
+  /** What is pinned for this path grows with it, and shrinks with a step back. */
+  private makeLengths(lengths: number) {
+    if (lengths !== this.lengths) this.showing.pinsTimes(this.task, lengths / this.lengths);
+    this.lengths = lengths;
   }
 
   private use(tool: Tool) {
@@ -542,6 +552,7 @@ class Page {
       chosen: this.showing.chosenPlace(),
       byHand: this.byHand.shown,
       isWalker: this.board.isWalker,
+      lengths: this.lengths,
     };
   }
 
@@ -554,6 +565,7 @@ class Page {
     if (then.photo) this.underlay.place(then.photo);
     this.board.look(then.view);
     this.walk(then.isWalker);
+    this.makeLengths(then.lengths);
     this.put(then.task, {});
     const { answer, chosen } = then;
     if (answer && answer.candidates.length > 0) this.showing.restore(answer, this.store.version, chosen);

@@ -87,7 +87,7 @@ export class Scene {
     this.moving = [...all, ...(inHand ? [inHand] : [])].map(({ shown, task }) => movingOf(shown, task.points));
     this.drawBoard();
     const cards = this.moving.slice(0, all.length);
-    strip.show(cards, all, showing.candidates().length, inHand ? -1 : showing.place(), showing.own);
+    strip.show(cards, all, showing.candidates().length, inHand ? -1 : showing.place(), showing.own, task());
     strip.pose(this.clock.part);
     return all.length;
   }

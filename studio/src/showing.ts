@@ -4,6 +4,7 @@
 import { type Choice, followed, isSame, placeOf } from "./choice";
 import type { Answer, Shown, Solution, Task } from "./messages";
 import type { Nine } from "./nine";
+import { isSamePath, shownTimes, withLengthsTimes } from "./task";
 
 export const MOST_PINNED = 3;
 /** An answer that is less than so much better than the one that was brought back does not replace it. */
@@ -151,6 +152,12 @@ export class Showing {
     const colour = colours.find((i) => !this.pinned.some((pin) => pin.colour === i)) ?? 0;
     this.pinned = [...this.pinned, { ...one, colour }];
     return true;
+  }
+
+  /** What is pinned for a path becomes so many times as large as the path does. */
+  pinsTimes(path: Task, by: number) {
+    for (const pin of this.pinned.filter(({ task }) => isSamePath(task, path)))
+      Object.assign(pin, { shown: shownTimes(pin.shown, by), task: withLengthsTimes(pin.task, by) });
   }
 
   unpin(one: Solution) {

@@ -5,7 +5,7 @@ import type { Moving } from "./figures";
 import { changing, setChildren } from "./focus";
 import type { Shown, Solution, Task } from "./messages";
 import { Picture } from "./picture";
-import { longestMax, sizeOf } from "./task";
+import { longestMax, pinnedFor, sizeOf } from "./task";
 import {
   type Graded,
   limitedBy,
@@ -73,6 +73,8 @@ interface Entry {
   chosen: boolean;
   /** Of one that is pinned. */
   colour?: number;
+  /** That it is pinned for something else than what stands, if it is. */
+  elsewhere: string;
 }
 
 /** One card of the strip. */
@@ -105,7 +107,7 @@ class Card {
   }
 
   /** Shows a linkage; `part`: where in its motion, drawn even out of sight; null: once it is in sight. */
-  show({ moving, task, name, marks, chosen, colour }: Entry, part: number | null) {
+  show({ moving, task, name, marks, chosen, colour, elsewhere }: Entry, part: number | null) {
     const { shown } = moving;
     Object.assign(this, { moving, task });
     const few = part !== null;
@@ -113,7 +115,7 @@ class Card {
     const pinned = colour !== undefined;
     setAll(this.node, { class: pinned ? `card pin-${colour}` : "card" });
     const { unit } = task;
-    const texts = [name, `${nearness(shown, unit)}; ${shown.type}`, inWords(shown)];
+    const texts = [name, `${nearness(shown, unit)}; ${shown.type}`, elsewhere || inWords(shown)];
     const size = sizeOf(task.points);
     const limits = {
       longest: longestMax(task),
@@ -130,19 +132,23 @@ class Card {
     const extent = few ? extentOf(moving) : undefined;
     const strays = few && task.closed && !exact ? strayInWords(moving, task.points, size) : "";
     const plain = [sizeInWords(shown.linkage, size, extent), ...[strays, limited].filter((text) => text !== "")];
-    const key = JSON.stringify([texts, graded, plain, marks, shown.accepted, chosen, pinned]);
+    // Figures of another path are told as such, and praise nothing.
+    const aside = (text: string) => element("span", {}, [elsewhere ? text.replace("the path", "its path") : text]);
+    const key = JSON.stringify([elsewhere, texts, graded, plain, marks, shown.accepted, chosen, pinned]);
     if (key === this.key) return;
     this.key = key;
     [this.title.textContent, this.figures.textContent, this.verdict.textContent] = texts;
     this.marks.replaceChildren(...marks.map((mark) => element("span", {}, [mark])));
     this.quality.replaceChildren(
-      ...graded.map(({ grade, text }) => element("span", { class: grade }, [`${SIGNS[grade]} ${text}`])),
-      ...plain.map((text) => element("span", {}, [text])),
+      ...graded.map(({ grade, text }) =>
+        elsewhere ? aside(text) : element("span", { class: grade }, [`${SIGNS[grade]} ${text}`]),
+      ),
+      ...plain.map(aside),
     );
     // No approval in green beside what is poor.
-    const isPoor = graded.some(({ grade }) => grade === "poor");
-    this.verdict.classList.toggle("good", shown.accepted && !isPoor);
-    this.verdict.classList.toggle("plain", shown.accepted && isPoor);
+    const isNotPraised = elsewhere !== "" || graded.some(({ grade }) => grade === "poor");
+    this.verdict.classList.toggle("good", shown.accepted && !isNotPraised);
+    this.verdict.classList.toggle("plain", elsewhere !== "" || (shown.accepted && isNotPraised));
     setAll(this.pick, { "aria-pressed": String(chosen) });
     this.pin.textContent = pinned ? "Unpin" : "Pin";
     setAll(this.pin, { "aria-label": `${pinned ? "Unpin" : "Pin"} ${name.toLowerCase()}` });
@@ -200,8 +206,9 @@ export class Strip {
     return card;
   }
 
-  /** Shows candidates, then what is pinned, each over the target that it was found for; `own`: the number of the user's. */
-  show(all: Moving[], solutions: Solution[], found: number, chosen: number, own: number | null) {
+  /** Shows candidates, then what is pinned, each over the target that it was found for; `now`: the task that stands;
+   * `own`: the number of the user's. */
+  show(all: Moving[], solutions: Solution[], found: number, chosen: number, own: number | null, now: Task) {
     const before = this.shown;
     this.found = found;
     this.shown = all.map((_, i) => (i < found ? this.card(0, i) : this.card(1, i - found)));
@@ -214,7 +221,9 @@ export class Strip {
       const colour = i < found ? undefined : (solutions[i].colour ?? 0);
       const isOwn = own !== null && moving.shown.number === own;
       const tags = [...(isOwn ? ["yours"] : []), ...(marked[i] ?? [])];
-      const entry = { moving, task: solutions[i].task, name, marks: tags, chosen: i === chosen, colour };
+      const { task } = solutions[i];
+      const elsewhere = i < found ? "" : pinnedFor(task, now);
+      const entry = { moving, task, name, marks: tags, chosen: i === chosen, colour, elsewhere };
       this.shown[i].show(entry, all.length <= MANY ? this.part : null);
     });
     if (this.shown.length !== before.length || this.shown.some((card, i) => card !== before[i])) {

@@ -1,6 +1,6 @@
 // What is asked, kept in step with itself: lists beside the points are as long as the points are many.
 
-import type { Answer, AnyAsk, Box, Point, Task } from "./messages";
+import type { Answer, AnyAsk, Box, Point, Shown, Task } from "./messages";
 
 /** So many points have all their linkages told. */
 export const NINE = 9;
@@ -93,12 +93,15 @@ export function withExtent(task: Task, times: number | null): Task {
 export const withoutControls = (kept: Record<string, string> | undefined): [string, string][] =>
   Object.entries(kept ?? {}).filter(([key]) => key !== LONGEST && key !== EXTENT);
 
+/** The numbers of a text. */
+const NUMBER = /[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?/gi;
+
 /** The same problem with all lengths so many times as long. */
 export function withLengthsTimes(task: Task, by: number): Task {
   const length = (value: number) => Number((value * by).toPrecision(12));
   const box = (one: Box | undefined) => one?.map(length) as Box | undefined;
   const isLength = (key: string) => [LONGEST, EXTENT, ...BOUND_LENGTHS, ...BOUND_PLACES].includes(key);
-  const all = (text: string) => text.replace(/[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?/gi, (n) => String(length(Number(n))));
+  const all = (text: string) => text.replace(NUMBER, (n) => String(length(Number(n))));
   const kept = Object.entries(task.kept ?? {}).map(([key, text]) => [key, isLength(key) ? all(text) : text]);
   return settled({
     ...task,
@@ -109,6 +112,15 @@ export function withLengthsTimes(task: Task, by: number): Task {
     footprint_in: box(task.footprint_in),
     kept: task.kept && Object.fromEntries(kept),
   });
+}
+
+/** The same linkage, as large for a path that is so many times as large. */
+export function shownTimes(shown: Shown, by: number): Shown {
+  const { A, B, a, b, c, d, e, ...signs } = shown.linkage;
+  const place = ([x, y]: number[]) => [x * by, y * by] as Point;
+  const linkage = { ...signs, A: place(A), B: place(B), a: a * by, b: b * by, c: c * by, d: d * by, e: e * by };
+  const within = shown.certified_within && shown.certified_within * by;
+  return { ...shown, linkage, rms: shown.rms * by, max: shown.max * by, certified_within: within };
 }
 
 /** What is asked of the linkage, of a path that is drawn anew: what belonged to the points of another is gone. */
@@ -262,6 +274,23 @@ function asked(task: Task): string {
       .filter(([key]) => !key.startsWith("solve."))
       .sort(),
   ]);
+}
+
+/** Whether two say the same to nine digits: lengths made larger and small again lose the last ones. */
+const isAlike = (one: string, other: string) => {
+  const [p, q] = [one, other].map((text) => text.replace(NUMBER, (n) => String(Number(Number(n).toPrecision(9)))));
+  return p === q;
+};
+
+export const isSamePath = (...both: [Task, Task]) => {
+  const [p, q] = both.map(({ points, closed, unit = "mm" }) => JSON.stringify([points, closed, unit]));
+  return isAlike(p, q);
+};
+
+/** Says that a pinned linkage was found for something else than what stands; empty: for the same. */
+export function pinnedFor(pin: Task, now: Task): string {
+  if (!isSamePath(pin, now)) return "pinned for another path";
+  return isAlike(asked(pin), asked(now)) ? "" : "pinned with other wishes";
 }
 
 /** Whether two are one problem under other names. */
