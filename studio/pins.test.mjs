@@ -43,6 +43,10 @@ test("what is chosen stays chosen while candidates come, go and change places", 
       socket.send(JSON.stringify({ ...answer, candidates: candidates.slice(0, most) }));
     });
   });
+  await page.evaluate(() => {
+    sessionStorage.clear();
+    localStorage.clear();
+  });
   await page.reload();
   await doing(page, "done");
   const again = async (ratio) => {
@@ -189,6 +193,36 @@ test("a pin of another path says so and is not praised; the drawing made larger 
   await page.keyboard.press("Tab");
   await doing(page, "done");
   assert.deepEqual([await verdict(), await praise()], ["pinned with other wishes", 0]);
+  assert.deepEqual(console_, []);
+  await context.close();
+  await end();
+});
+
+test("a reload keeps what is built: the linkage that is chosen, the sizes, the same plates to the byte", async () => {
+  const { page, said: console_, context, end } = await begun();
+  await doing(page, "done");
+  await page.locator(".pick", { hasText: "Linkage 3" }).click();
+  await tab(page, "build");
+  const sizes = { "#thickness_mm": "5", "#hole_mm": "3.2", "#margin_mm": "4.5", "#kerf_mm": "0.15" };
+  for (const [id, size] of Object.entries(sizes)) await page.locator(id).fill(size);
+  const sheet = ["Width of the sheet", "Height of the sheet"].map((name) => page.getByLabel(name));
+  for (const [i, field] of sheet.entries()) await field.fill(String(900 - 100 * i));
+  const plates = async () => {
+    await page.waitForFunction(() => document.querySelector("#plates svg")?.checkVisibility());
+    assert.equal(await page.locator("#plates-of").textContent(), "Plates of Linkage 3");
+    return saved(page, () => page.locator("#save-dxf").click());
+  };
+  const before = await plates();
+  await page.reload();
+  await page.waitForSelector("#strip li");
+  assert.deepEqual(await pressed(page), ["Linkage 3"], "from the first card on");
+  await doing(page, "done");
+  assert.deepEqual(await pressed(page), ["Linkage 3"]);
+  await tab(page, "build");
+  for (const [id, size] of Object.entries(sizes)) assert.equal(await page.locator(id).inputValue(), size);
+  assert.deepEqual(await Promise.all(sheet.map((field) => field.inputValue())), ["900", "800"]);
+  assert.deepEqual(await plates(), before);
+  await shot(page, "built-again");
   assert.deepEqual(console_, []);
   await context.close();
   await end();

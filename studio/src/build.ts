@@ -28,6 +28,7 @@ export class BuildPanel {
         "aria-label": i === 0 ? "Width of the sheet" : "Height of the sheet",
       }) as HTMLInputElement,
   );
+  private title = element("h3", { id: "plates-of" });
   private plates = element("div", { id: "plates", role: "img", "aria-label": "The plates to cut", hidden: "" });
   private fault = element("p", { class: "fault", role: "alert" });
   private layers = element("pre", { id: "layers", tabindex: "0", "aria-label": "Layers and clearances" });
@@ -49,6 +50,10 @@ export class BuildPanel {
     /** Its number in the list, for the names of files. */
     private rank: () => string,
     private isWalker: () => boolean,
+    /** What it is called on the page. */
+    private name: () => string,
+    /** A size is another one. */
+    changed: () => void,
   ) {
     const rows = SIZES.map(([key, label, usual]) => {
       const field = element("input", {
@@ -59,14 +64,17 @@ export class BuildPanel {
         id: key,
       }) as HTMLInputElement;
       this.fields.set(key, field);
-      field.addEventListener("input", () => this.later());
       return element("label", {}, [
         label,
         " ",
         element("span", { class: "field" }, [field, element("span", {}, ["mm"])]),
       ]);
     });
-    for (const field of this.sheet) field.addEventListener("input", () => this.later());
+    for (const field of this.all().values())
+      field.addEventListener("input", () => {
+        changed();
+        this.later();
+      });
     const sheet = element("div", { class: "sheet" }, ["Sheet ", this.sheet[0], " × ", this.sheet[1], " mm"]);
     place.append(
       element("h2", {}, ["Build it"]),
@@ -74,6 +82,7 @@ export class BuildPanel {
       element("div", { class: "sizes" }, rows),
       sheet,
       this.fault,
+      this.title,
       this.plates,
       this.legs,
       element("div", { class: "row" }, [this.dxf, this.save, this.elsewhere]),
@@ -82,6 +91,19 @@ export class BuildPanel {
     const sizes = ["hole_mm", "margin_mm", "kerf_mm", "sheet_mm"];
     this.dxf.addEventListener("click", () => void this.file("dxf-plates", "-plates.dxf", sizes));
     this.save.addEventListener("click", () => void this.file("archive", ".zip"));
+  }
+
+  /** All fields, by what they are remembered under. */
+  private all = () =>
+    new Map([...this.fields, ...this.sheet.map((field, i): [string, HTMLInputElement] => [`sheet${i}`, field])]);
+
+  /** What stands in the fields. */
+  get sizes(): Record<string, string> {
+    return Object.fromEntries([...this.all()].map(([key, { value }]) => [key, value]));
+  }
+
+  set sizes(sizes: Record<string, string>) {
+    for (const [key, field] of this.all()) field.value = sizes[key] ?? "";
   }
 
   private set(): Record<string, string> {
@@ -112,7 +134,8 @@ export class BuildPanel {
   private async show() {
     const chosen = this.host.chosen();
     this.legs.hidden = !chosen || !this.isWalker();
-    for (const part of [this.plates, this.dxf, this.save, this.layers.parentElement as HTMLElement])
+    this.title.textContent = `Plates of ${this.name()}`;
+    for (const part of [this.title, this.plates, this.dxf, this.save, this.layers.parentElement as HTMLElement])
       part.hidden = !chosen;
     this.nothing.hidden = chosen !== null;
     const elsewhere = chosen ? pinnedFor(chosen.task, this.host.task()) : "";

@@ -15,7 +15,7 @@ import { Gallery } from "./gallery";
 import type { Linkage } from "./grab";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
-import { remember, remembered } from "./memory";
+import { type Place, remember, remembered } from "./memory";
 import type { Answer, AnyAsk, Point, Shown, Task } from "./messages";
 import { nameFault } from "./names";
 import { Nine } from "./nine";
@@ -44,7 +44,7 @@ interface State {
   photo: Placed | null;
   view: View;
   answer: Answer | null;
-  chosen: { pin: number } | { candidate: number } | null;
+  chosen: Place;
   byHand: Shown | null;
   isWalker: boolean;
   lengths: number;
@@ -156,6 +156,8 @@ class Page {
     this.desk.host,
     () => this.scene.rank(),
     () => this.board.isWalker,
+    () => this.scene.name(),
+    () => this.keep(),
   );
   private tabs = new Tabs(document.querySelector(".rail") as HTMLElement, (tab) => this.build.open(tab === "build"));
 
@@ -274,19 +276,21 @@ class Page {
   async begin() {
     const kept = remembered();
     let view = kept?.view;
+    let { answer } = kept ?? {};
     let from: Linkage | undefined;
     let isWalker = kept ? kept.isWalker === true : EXAMPLES[0].isWalker === true;
     if (kept) {
       ({ hints: this.hints, begunWith: this.begunWith } = kept);
       this.store.task = nameFault(kept.task.name) === null ? kept.task : { ...kept.task, name: "drawing" };
       this.showing.pinned = kept.pinned;
+      this.build.sizes = kept.build ?? {};
     }
     try {
       const begunWith = await api.beginning();
       const given = JSON.parse(begunWith) as AnyAsk | null;
       if (given && this.begunWith !== begunWith) {
         if (kept) this.store.note();
-        view = undefined;
+        view = answer = undefined;
         isWalker = false;
         this.store.task = tasks.taskOf(given);
         from = given.from;
@@ -305,6 +309,12 @@ class Page {
     this.showUnderlay();
     this.exchange.begin();
     this.put(this.task, from ? { fresh: true, from } : {});
+    if (answer) {
+      const { version } = this.store;
+      this.showing.restore({ ...answer, version }, version, kept?.chosen ?? null);
+      this.draw();
+      this.keep();
+    }
     void this.desk.begin();
     this.scene.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
   }
@@ -465,6 +475,7 @@ class Page {
     const [short, ...rest] = answer.said.split("\n");
     const isSaid = answer.sure !== undefined;
     this.sure.show(answer.sure ?? null, isSaid ? [short, ...rest].join("\n") : "");
+    if (answer.doing === "done") this.keep();
     this.desk.changed(answer.doing === "done");
     this.build.later();
     const status = head + (isSaid ? short : answer.said);
@@ -485,6 +496,7 @@ class Page {
       this.byHand.take(null);
     }
     this.showing.choose(index, this.task);
+    this.keep();
     this.draw();
     this.desk.chose();
     this.build.later();
@@ -511,8 +523,18 @@ class Page {
 
   private keep() {
     const { task, begunWith, hints } = this;
-    const { isWalker } = this.board;
-    remember({ task, pinned: this.showing.pinned, begunWith, hints, view: this.board.looking, isWalker });
+    const { pinned, answer } = this.showing;
+    remember({
+      task,
+      pinned,
+      begunWith,
+      hints,
+      view: this.board.looking,
+      isWalker: this.board.isWalker,
+      build: this.build.sizes,
+      // What is found for another task is nothing for this one.
+      ...(answer?.version === this.store.version ? { answer, chosen: this.showing.chosenPlace() } : {}),
+    });
   }
 
   private say(text: string) {

@@ -79,6 +79,12 @@ export class Scene {
     return place < found ? String(place + 1) : `pinned-${place - found + 1}`;
   }
 
+  /** What it is called where it is spoken of. */
+  name(): string {
+    const rank = this.rank();
+    return Number(rank) ? `Linkage ${rank}` : rank === "by-hand" ? "your linkage" : rank.replace("pinned-", "Pinned ");
+  }
+
   /** Draws board and cards; gives how many cards there are. */
   draw(): number {
     const { byHand, showing, strip, task } = this.parts;

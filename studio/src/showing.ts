@@ -2,6 +2,7 @@
 // board shows.
 
 import { type Choice, followed, isSame, placeOf } from "./choice";
+import type { Place } from "./memory";
 import type { Answer, Shown, Solution, Task } from "./messages";
 import type { Nine } from "./nine";
 import { isSamePath, shownTimes, withLengthsTimes } from "./task";
@@ -64,7 +65,7 @@ export class Showing {
   }
 
   /** Brings back what a step back or forth found. */
-  restore(answer: Answer, version: number, chosen: { pin: number } | { candidate: number } | null) {
+  restore(answer: Answer, version: number, chosen: Place) {
     this.answer = answer;
     this.held = null;
     this.restored = { version, answer };
@@ -133,7 +134,7 @@ export class Showing {
   }
 
   /** Which one is chosen, by its place among those that are remembered. */
-  chosenPlace(): { pin: number } | { candidate: number } | null {
+  chosenPlace(): Place {
     const { choice } = this;
     if (!choice) return null;
     if ("pin" in choice) return { pin: this.pinned.indexOf(choice.pin) };
