@@ -228,6 +228,45 @@ test("a reload keeps what is built: the linkage that is chosen, the sizes, the s
   await end();
 });
 
+test("a linkage that jams is not praised, and a wish that forbids it is one click", async () => {
+  const { page, said: console_, context, end } = await begun();
+  // What the studio answers, with a worst angle at which it jams for as long as no angle is asked for.
+  let isAsked = false;
+  await page.routeWebSocket(/live/, (socket) => {
+    const server = socket.connectToServer();
+    socket.onMessage((text) => {
+      isAsked = JSON.parse(text).transmission_deg_min !== undefined;
+      server.send(text);
+    });
+    server.onMessage((text) => {
+      const answer = JSON.parse(text);
+      const jamming = isAsked ? {} : { transmission_deg: 3.2 };
+      socket.send(JSON.stringify({ ...answer, candidates: answer.candidates.map((one) => ({ ...one, ...jamming })) }));
+    });
+  });
+  await page.reload();
+  await tab(page, "wishes");
+  await page.locator("#transmission").fill("");
+  await page.keyboard.press("Tab");
+  await doing(page, "done");
+  const card = page.locator(".pick").first();
+  assert.match(await card.locator(".quality").textContent(), /transmission 3\.2° \(it jams\)/);
+  assert.equal(await card.locator(".verdict").textContent(), "meets what was asked, but jams");
+  assert.match(await status(page), /^Best: .* meets what was asked, but jams/);
+  assert.equal(await card.locator(".verdict.good").count(), 0);
+  await shot(page, "jams");
+  await button(page, "It jams: ask for at least 30°").click();
+  await doing(page, "done");
+  assert.equal(await page.locator("#transmission").inputValue(), "30");
+  assert.match(await card.locator(".verdict").textContent(), /^meets everything/);
+  assert.ok(await page.locator("#helps").isHidden());
+  await button(page, "Undo").click();
+  assert.equal(await page.locator("#transmission").inputValue(), "");
+  assert.deepEqual(console_, []);
+  await context.close();
+  await end();
+});
+
 test("the details say whether they are of what stands, and what they save is what they show", async () => {
   const { page, said: console_, context, end } = await begun();
   await doing(page, "done");

@@ -28,7 +28,7 @@ export class BuildPanel {
         "aria-label": i === 0 ? "Width of the sheet" : "Height of the sheet",
       }) as HTMLInputElement,
   );
-  private title = element("h3", { id: "plates-of" });
+  private title = element("h2", { id: "plates-of" });
   private plates = element("div", { id: "plates", role: "img", "aria-label": "The plates to cut", hidden: "" });
   private fault = element("p", { class: "fault", role: "alert" });
   private layers = element("pre", { id: "layers", tabindex: "0", "aria-label": "Layers and clearances" });

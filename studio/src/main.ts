@@ -486,8 +486,12 @@ class Page {
   private draw() {
     byId("nothing").hidden = this.scene.draw() > 0;
     const { answer } = this.showing;
-    this.helps.show(answer?.relaxations ?? [], this.task.unit, tasks.nearestInstead(this.task, answer));
-    byId<HTMLButtonElement>("linkage-file").disabled = !this.scene.chosen();
+    const chosen = this.scene.chosen();
+    // What is asked now is not what a pinned one jams for; one in the hand is changed by the hand.
+    const isFound = chosen?.task === this.task && !this.byHand.shown && answer?.doing === "done";
+    const instead = tasks.nearestInstead(this.task, answer) ?? (isFound ? tasks.unjammed(this.task, chosen.shown) : null);
+    this.helps.show(answer?.relaxations ?? [], this.task.unit, instead);
+    byId<HTMLButtonElement>("linkage-file").disabled = !chosen;
   }
 
   private choose(index: number) {

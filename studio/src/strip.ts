@@ -8,6 +8,7 @@ import { Picture } from "./picture";
 import { longestMax, pinnedFor, sizeOf } from "./task";
 import {
   type Graded,
+  jams,
   limitedBy,
   marks,
   nearnessInWords,
@@ -41,7 +42,9 @@ const word = (key: string) =>
 
 export const inWords = (shown: Shown) =>
   shown.accepted
-    ? "meets everything that was asked"
+    ? jams(shown)
+      ? "meets what was asked, but jams"
+      : "meets everything that was asked"
     : `not met: ${[...new Set(shown.unmet.map(word))].join(", ") || "a defect"}`;
 
 /** Whether what it misses by is rounding: an error of 1e-14 tells nobody anything. */

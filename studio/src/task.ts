@@ -1,6 +1,7 @@
 // What is asked, kept in step with itself: lists beside the points are as long as the points are many.
 
 import type { Answer, AnyAsk, Box, Point, Shown, Task } from "./messages";
+import { jams } from "./words";
 
 /** So many points have all their linkages told. */
 export const NINE = 9;
@@ -305,8 +306,14 @@ export function withoutStale(before: Task, task: Task): Task {
   return expect && expect.of === before.expect?.of && asked(task) !== asked(before) ? rest : task;
 }
 
+/** Another task that is offered, what it is, and what its button says if that is more. */
+export type Instead = { task: Task; said: string; button?: string } | null;
+
+/** A least transmission angle, degrees, with which a linkage runs freely. */
+const FREELY = 30;
+
 /** Where no linkage through nine points does all that is asked: the nearest one instead, within a tolerance. */
-export function nearestInstead(task: Task, answer: Answer | null): { task: Task; said: string } | null {
+export function nearestInstead(task: Task, answer: Answer | null): Instead {
   const isFor = isExact(task) && answer?.doing === "done" && !answer.candidates.some((one) => one.accepted);
   if (!isFor) return null;
   const tolerance = task.tolerance ?? usualTolerance(task);
@@ -314,6 +321,16 @@ export function nearestInstead(task: Task, answer: Answer | null): { task: Task;
   return {
     task: { ...task, method: undefined, tolerance },
     said: `the nearest linkage within ${within} instead of exactly through the points`,
+  };
+}
+
+/** Where a linkage meets what is asked but jams, and nothing forbids that: a wish that does. */
+export function unjammed(task: Task, shown: Shown): Instead {
+  if (!shown.accepted || !jams(shown) || task.transmission_deg_min) return null;
+  return {
+    task: { ...task, transmission_deg_min: FREELY },
+    said: `least transmission angle ${FREELY}°`,
+    button: `It jams: ask for at least ${FREELY}°`,
   };
 }
 
