@@ -107,9 +107,7 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   // Everything about it, as it was found.
   await card.click();
   await page.locator("#details summary").click();
-  await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
-  );
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "Pinned 2 of walking-leg");
   await page.waitForSelector(".details-charts figure");
   await page.locator("#format").selectOption("toml");
   const file = await saved(page, () => page.locator("#export").click());
@@ -131,9 +129,7 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   // A pin's target is drawn again, and that is one step.
   await drawer(page, "details");
   await card.click();
-  await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
-  );
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "Pinned 2 of walking-leg");
   await button(page, "Draw its target").click();
   assert.equal(await page.locator("#point-count").textContent(), "19");
   await button(page, "Undo").click();
@@ -150,6 +146,12 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
 test("a pin of another path says so and is not praised; the drawing made larger makes its pins larger", async () => {
   const { page, said: console_, context, end } = await begun();
   await doing(page, "done");
+  await button(page, "Pin linkage 1").click();
+  await said(page, /^Pinned 1 is its card/);
+  const pinned = button(page, "Pinned linkage 1");
+  assert.deepEqual([await pinned.textContent(), await pinned.getAttribute("aria-pressed")], ["Pinned", "true"]);
+  await pinned.click();
+  assert.equal(await page.locator("[class*=pin-] > .pick").count(), 0, "a second click unpins");
   await button(page, "Pin linkage 1").click();
   const card = page.locator(".pick", { hasText: "Pinned 1" });
   await card.click();
@@ -271,9 +273,7 @@ test("the details say whether they are of what stands, and what they save is wha
   const { page, said: console_, context, end } = await begun();
   await doing(page, "done");
   await page.locator("#details summary").click();
-  await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
-  );
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "Linkage 1 of walking-leg");
   await page.locator("#format").selectOption("json");
   const save = async () => JSON.parse((await saved(page, () => page.locator("#export").click())).text);
   const before = await save();
@@ -285,7 +285,9 @@ test("the details say whether they are of what stands, and what they save is wha
   await page.mouse.move(x, y);
   await page.mouse.down();
   for (let i = 1; i <= 10; i += 1) await page.mouse.move(x, y - i);
-  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-leg, as it stood");
+  await page.waitForFunction(
+    () => document.querySelector("#details-title").textContent === "Linkage 1 of walking-leg, as it stood",
+  );
   assert.deepEqual(
     await page.evaluate(async () => {
       const asked = [];
@@ -305,9 +307,7 @@ test("the details say whether they are of what stands, and what they save is wha
   );
   await page.mouse.up();
   await doing(page, "done");
-  await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
-  );
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "Linkage 1 of walking-leg");
   assert.notDeepEqual(await save(), before);
   assert.deepEqual(console_, []);
   await context.close();

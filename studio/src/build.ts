@@ -50,8 +50,6 @@ export class BuildPanel {
     /** Its number in the list, for the names of files. */
     private rank: () => string,
     private isWalker: () => boolean,
-    /** What it is called on the page. */
-    private name: () => string,
     /** A size is another one. */
     changed: () => void,
   ) {
@@ -134,13 +132,12 @@ export class BuildPanel {
   private async show() {
     const chosen = this.host.chosen();
     this.legs.hidden = !chosen || !this.isWalker();
-    this.title.textContent = `Plates of ${this.name()}`;
+    this.title.textContent = `Plates of ${this.host.name()}`;
     for (const part of [this.title, this.plates, this.dxf, this.save, this.layers.parentElement as HTMLElement])
       part.hidden = !chosen;
     this.nothing.hidden = chosen !== null;
     const elsewhere = chosen ? pinnedFor(chosen.task, this.host.task()) : "";
-    this.elsewhere.textContent =
-      elsewhere && `This linkage is ${elsewhere}: these plates are not for the present drawing.`;
+    this.elsewhere.textContent = elsewhere && `This linkage is ${elsewhere}: its plates are not of this drawing.`;
     if (!chosen) return;
     const [of, set] = [api.drawn(chosen), this.set()];
     const key = JSON.stringify([of, set]);

@@ -87,14 +87,10 @@ export class Helps {
       button.addEventListener("click", () => this.take(() => instead.task, instead.said));
       items.push(element("li", {}, [button]));
     }
-    changing(
-      this.list,
-      () => {
-        this.list.hidden = items.length === 0;
-        this.list.replaceChildren(...items);
-      },
-      document.querySelector<SVGElement>("#board svg") ?? this.list,
-    );
+    changing(this.list, () => {
+      this.list.hidden = items.length === 0;
+      this.list.replaceChildren(...items);
+    });
   }
 }
 
@@ -138,13 +134,9 @@ export class Kept {
       item.append(drop);
       return item;
     });
-    changing(
-      this.place,
-      () => {
-        this.place.hidden = all.length === 0;
-        list.replaceChildren(...items);
-      },
-      document.querySelector<SVGElement>("#board svg") ?? this.place,
-    );
+    changing(this.place, () => {
+      this.place.hidden = all.length === 0;
+      list.replaceChildren(...items);
+    });
   }
 }

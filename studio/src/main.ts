@@ -15,6 +15,7 @@ import { Gallery } from "./gallery";
 import type { Linkage } from "./grab";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
+import { byId, input } from "./ids";
 import { type Place, remember, remembered } from "./memory";
 import type { Answer, AnyAsk, Point, Shown, Task } from "./messages";
 import { nameFault } from "./names";
@@ -56,14 +57,14 @@ const VIEW_RESTS = 300;
 const CONTROLS_WAIT = 100;
 
 const TOOLS: Tool[] = ["draw", "points", "grab", "pivots_in", "footprint_in", "photo-move", "photo-scale"];
+const CORNERS = "Drag from corner to corner.";
 /** What a tool is for, said when it is taken for the first time. */
 const TOOL_SAID: Partial<Record<Tool, string>> = {
   points: "A click on the path puts a point there, a click beside it one behind the last. Clear begins anew.",
+  pivots_in: CORNERS,
+  footprint_in: CORNERS,
   grab: "Drag a joint of the linkage, or the middle of its crank to turn it. Drag elsewhere to move the board.",
 };
-
-const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
-const input = (id: string) => byId<HTMLInputElement>(id);
 
 class Page {
   private hints = true;
@@ -129,6 +130,7 @@ class Page {
   private desk = new Desk(byId("desk"), byId("share"), {
     task: () => this.task,
     chosen: () => this.scene.chosen(),
+    name: () => this.scene.name(),
     pinned: () => this.showing.pinned,
     take: (task) => this.open(tasks.taskOf({ ...task, version: 0 })),
     keep: (one) => this.keepShown(one),
@@ -156,7 +158,6 @@ class Page {
     this.desk.host,
     () => this.scene.rank(),
     () => this.board.isWalker,
-    () => this.scene.name(),
     () => this.keep(),
   );
   private tabs = new Tabs(document.querySelector(".rail") as HTMLElement, (tab) => this.build.open(tab === "build"));
@@ -348,8 +349,8 @@ class Page {
   private use(tool: Tool) {
     this.board.tool = tool;
     const said = TOOL_SAID[tool];
-    delete TOOL_SAID[tool];
-    if (said && this.task.points.length > 0) this.desk.say(said);
+    if (said !== CORNERS) delete TOOL_SAID[tool];
+    if (said && (said === CORNERS || this.task.points.length > 0)) this.desk.say(said);
     for (const button of document.querySelectorAll("[id^=tool-]"))
       button.setAttribute("aria-pressed", String(button.id === `tool-${tool}`));
     if (tool === "grab") this.grab();
@@ -489,7 +490,8 @@ class Page {
     const chosen = this.scene.chosen();
     // What is asked now is not what a pinned one jams for; one in the hand is changed by the hand.
     const isFound = chosen?.task === this.task && !this.byHand.shown && answer?.doing === "done";
-    const instead = tasks.nearestInstead(this.task, answer) ?? (isFound ? tasks.unjammed(this.task, chosen.shown) : null);
+    const instead =
+      tasks.nearestInstead(this.task, answer) ?? (isFound ? tasks.unjammed(this.task, chosen.shown) : null);
     this.helps.show(answer?.relaxations ?? [], this.task.unit, instead);
     byId<HTMLButtonElement>("linkage-file").disabled = !chosen;
   }
@@ -511,16 +513,20 @@ class Page {
     if (!this.showing.pin(one)) return this.desk.say(`${MOST_PINNED} are pinned already: unpin one of them first.`);
     this.keep();
     this.draw();
+    this.desk.say(
+      `Pinned ${this.showing.pinned.length} is its card, the last one; its curve on the board has that card's colour.`,
+    );
   }
 
-  /** Pins a candidate to compare others with it, or lets a pinned one go. */
+  /** Pins a candidate to compare others with it; lets one go that is pinned. */
   private pin(index: number) {
     const one = this.showing.all(this.task)[index];
-    if (index < this.showing.candidates().length) {
+    const pin = index < this.showing.candidates().length ? this.showing.pinOf(one) : one;
+    if (!pin) {
       this.guide.done("pin");
       return this.keepShown(one);
     }
-    this.showing.unpin(one);
+    this.showing.unpin(pin);
     this.keep();
     this.draw();
   }

@@ -1,7 +1,7 @@
 // What is shown of all that was found: the candidates of the latest answer, what is pinned, and which one of them the
 // board shows.
 
-import { type Choice, followed, isSame, placeOf } from "./choice";
+import { type Choice, followed, isSame, isTheSame, placeOf } from "./choice";
 import type { Place } from "./memory";
 import type { Answer, Shown, Solution, Task } from "./messages";
 import type { Nine } from "./nine";
@@ -153,6 +153,11 @@ export class Showing {
     const colour = colours.find((i) => !this.pinned.some((pin) => pin.colour === i)) ?? 0;
     this.pinned = [...this.pinned, { ...one, colour }];
     return true;
+  }
+
+  /** The pin of a linkage, if it has one. */
+  pinOf({ shown }: Solution): Solution | undefined {
+    return this.pinned.find((pin) => isTheSame(pin.shown, shown));
   }
 
   /** What is pinned for a path becomes so many times as large as the path does. */

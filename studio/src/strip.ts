@@ -1,6 +1,7 @@
 // The strip of candidates: small pictures that move, with their figures.
 
 import { element, figure, setAll } from "../../src/report/html/player/svg.mjs";
+import { isTheSame } from "./choice";
 import type { Moving } from "./figures";
 import { changing, setChildren } from "./focus";
 import type { Shown, Solution, Task } from "./messages";
@@ -76,6 +77,8 @@ interface Entry {
   chosen: boolean;
   /** Of one that is pinned. */
   colour?: number;
+  /** Of a candidate: whether it is pinned. */
+  isKept: boolean;
   /** That it is pinned for something else than what stands, if it is. */
   elsewhere: string;
 }
@@ -110,7 +113,7 @@ class Card {
   }
 
   /** Shows a linkage; `part`: where in its motion, drawn even out of sight; null: once it is in sight. */
-  show({ moving, task, name, marks, chosen, colour, elsewhere }: Entry, part: number | null) {
+  show({ moving, task, name, marks, chosen, colour, isKept, elsewhere }: Entry, part: number | null) {
     const { shown } = moving;
     Object.assign(this, { moving, task });
     const few = part !== null;
@@ -137,7 +140,7 @@ class Card {
     const plain = [sizeInWords(shown.linkage, size, extent), ...[strays, limited].filter((text) => text !== "")];
     // Figures of another path are told as such, and praise nothing.
     const aside = (text: string) => element("span", {}, [elsewhere ? text.replace("the path", "its path") : text]);
-    const key = JSON.stringify([elsewhere, texts, graded, plain, marks, shown.accepted, chosen, pinned]);
+    const key = JSON.stringify([elsewhere, texts, graded, plain, marks, shown.accepted, chosen, pinned, isKept]);
     if (key === this.key) return;
     this.key = key;
     [this.title.textContent, this.figures.textContent, this.verdict.textContent] = texts;
@@ -153,8 +156,12 @@ class Card {
     this.verdict.classList.toggle("good", shown.accepted && !isNotPraised);
     this.verdict.classList.toggle("plain", elsewhere !== "" || (shown.accepted && isNotPraised));
     setAll(this.pick, { "aria-pressed": String(chosen) });
-    this.pin.textContent = pinned ? "Unpin" : "Pin";
-    setAll(this.pin, { "aria-label": `${pinned ? "Unpin" : "Pin"} ${name.toLowerCase()}` });
+    const act = pinned ? "Unpin" : isKept ? "Pinned" : "Pin";
+    this.pin.textContent = act;
+    setAll(this.pin, {
+      "aria-label": `${act} ${name.toLowerCase()}`,
+      ...(pinned ? {} : { "aria-pressed": String(isKept) }),
+    });
   }
 
   /** Draws what is to be shown, unless it is drawn already. */
@@ -226,7 +233,8 @@ export class Strip {
       const tags = [...(isOwn ? ["yours"] : []), ...(marked[i] ?? [])];
       const { task } = solutions[i];
       const elsewhere = i < found ? "" : pinnedFor(task, now);
-      const entry = { moving, task, name, marks: tags, chosen: i === chosen, colour, elsewhere };
+      const isKept = solutions.slice(found).some(({ shown }) => isTheSame(shown, moving.shown));
+      const entry = { moving, task, name, marks: tags, chosen: i === chosen, colour, isKept, elsewhere };
       this.shown[i].show(entry, all.length <= MANY ? this.part : null);
     });
     if (this.shown.length !== before.length || this.shown.some((card, i) => card !== before[i])) {
