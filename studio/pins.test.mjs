@@ -109,6 +109,10 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   await page.locator("#details summary").click();
   await page.waitForFunction(() => document.querySelector("#details-title").textContent === "Pinned 2 of walking-leg");
   await page.waitForSelector(".details-charts figure");
+  // What is said of the best one stands under a heading of its own, behind the words of this one.
+  const heads = await page.locator(".details-words h3").allTextContents();
+  assert.deepEqual([heads[0], heads.at(-1)], ["What it can do", "The search and its best linkage"]);
+  assert.match(await page.locator("#format option").first().textContent(), /plates to cut/);
   await page.locator("#format").selectOption("toml");
   const file = await saved(page, () => page.locator("#export").click());
   assert.equal(file.name, "walking-leg.toml");

@@ -273,8 +273,10 @@ export class DetailsPanel {
     } as never);
     this.player.show({ key: "", name: "", ...shown });
     this.words.replaceChildren(
-      ...marked(details.summary, "header > p, header > ul"),
       ...marked(details.words, "article > :not(h2)"),
+      // Of all that was found, and the best of it: that may be another one.
+      element("h3", {}, ["The search and its best linkage"]),
+      ...marked(details.summary, "header > p, header > ul"),
     );
     this.panel.dataset.shown = this.shownOf;
   }

@@ -185,9 +185,7 @@ class Page {
         const hips = on && this.scene.chosen()?.shown.linkage;
         const ground = tasks.boxOf(this.task.points)?.[1] ?? 0;
         if (hips && Math.min(hips.A[1], hips.B[1]) < ground)
-          this.desk.say(
-            "The hips lie below the ground. Under Wishes tick “both fixed pivots inside a box”: the box of a walking machine lies above its path.",
-          );
+          this.desk.say("The hips lie below the ground: tick “both fixed pivots inside a box” under Wishes.");
       },
       close: (closed) => this.replace(tasks.settled({ ...this.task, closed })),
       hideHints: () => {
@@ -426,7 +424,7 @@ class Page {
     }
     if (isStale)
       this.desk.say(
-        "The figures published for this problem hold for it as it was opened: they are let go. Undo brings them back.",
+        "The figures published for this problem hold for it as it was opened: they go. Undo brings them back.",
       );
     this.size.show(task);
     if (isFresh) {
