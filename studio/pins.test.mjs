@@ -268,6 +268,12 @@ test("a linkage that jams is not praised, and a wish that forbids it is one clic
   assert.ok(await page.locator("#helps").isHidden());
   await button(page, "Undo").click();
   assert.equal(await page.locator("#transmission").inputValue(), "");
+  // A box that was scaled shows four digits of its size; an empty board has no lengths.
+  await page.locator("#path-width").fill("77.7");
+  await page.keyboard.press("Tab");
+  assert.match(await page.locator("#left").inputValue(), /^-82\.[67]\d?$/);
+  await button(page, "Clear").click();
+  assert.equal(await page.locator("#longest-said").textContent(), "at most 3 × the path");
   assert.deepEqual(console_, []);
   await context.close();
   await end();
