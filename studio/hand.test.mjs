@@ -318,8 +318,8 @@ test("the focus stays where work is done", async () => {
   // Pinning adds a card, unpinning takes one away.
   await button(page, "Pin linkage 1").focus();
   await page.keyboard.press("Enter");
-  assert.equal(await focus(), "Pin linkage 1");
-  await button(page, "Pin linkage 1").focus();
+  assert.equal(await focus(), "Pinned linkage 1");
+  await button(page, "Pin linkage 2").focus();
   await page.keyboard.press("Enter");
   await button(page, "Unpin pinned 2").focus();
   await page.keyboard.press("Enter");

@@ -43,6 +43,10 @@ test("what is chosen stays chosen while candidates come, go and change places", 
       socket.send(JSON.stringify({ ...answer, candidates: candidates.slice(0, most) }));
     });
   });
+  await page.evaluate(() => {
+    sessionStorage.clear();
+    localStorage.clear();
+  });
   await page.reload();
   await doing(page, "done");
   const again = async (ratio) => {
@@ -103,10 +107,12 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   // Everything about it, as it was found.
   await card.click();
   await page.locator("#details summary").click();
-  await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
-  );
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "Pinned 2 of walking-leg");
   await page.waitForSelector(".details-charts figure");
+  // What is said of the best one stands under a heading of its own, behind the words of this one.
+  const heads = await page.locator(".details-words h3").allTextContents();
+  assert.deepEqual([heads[0], heads.at(-1)], ["What it can do", "The search and its best linkage"]);
+  assert.match(await page.locator("#format option").first().textContent(), /plates to cut/);
   await page.locator("#format").selectOption("toml");
   const file = await saved(page, () => page.locator("#export").click());
   assert.equal(file.name, "walking-leg.toml");
@@ -127,9 +133,7 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   // A pin's target is drawn again, and that is one step.
   await drawer(page, "details");
   await card.click();
-  await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
-  );
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "Pinned 2 of walking-leg");
   await button(page, "Draw its target").click();
   assert.equal(await page.locator("#point-count").textContent(), "19");
   await button(page, "Undo").click();
@@ -143,13 +147,143 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   await end();
 });
 
+test("a pin of another path says so and is not praised; the drawing made larger makes its pins larger", async () => {
+  const { page, said: console_, context, end } = await begun();
+  await doing(page, "done");
+  await button(page, "Pin linkage 1").click();
+  await said(page, /^Pinned 1 is its card/);
+  const pinned = button(page, "Pinned linkage 1");
+  assert.deepEqual([await pinned.textContent(), await pinned.getAttribute("aria-pressed")], ["Pinned", "true"]);
+  await pinned.click();
+  assert.equal(await page.locator("[class*=pin-] > .pick").count(), 0, "a second click unpins");
+  await button(page, "Pin linkage 1").click();
+  const card = page.locator(".pick", { hasText: "Pinned 1" });
+  await card.click();
+  const verdict = () => card.locator(".verdict").textContent();
+  const rms = async () => Number((await card.textContent()).match(/rms ([\d.]+)/)[1]);
+  const praise = () => card.locator(".good").count();
+  const [met, near, praised] = [await verdict(), await rms(), await praise()];
+  assert.match(met, /^meets/);
+  assert.ok(praised > 0);
+  const width = page.locator("#path-width");
+  const before = Number(await width.inputValue());
+  // Twice as wide: so is the pinned linkage, here and a step back and forth.
+  await width.fill(String(2 * before));
+  await page.keyboard.press("Tab");
+  await doing(page, "done");
+  assert.deepEqual([await verdict(), await praise()], [met, praised]);
+  assert.ok(Math.abs((await rms()) / near - 2) < 0.02, `${await rms()} of ${near}`);
+  const large = await linkage(page);
+  await button(page, "Undo").click();
+  await doing(page, "done");
+  assert.deepEqual([await verdict(), await rms()], [met, near]);
+  const small = await linkage(page);
+  assert.ok(
+    large.every((x, i) => Math.abs(x - 2 * small[i]) < 0.03 || x === small[i]),
+    `${large} of ${small}`,
+  );
+  assert.equal(await page.locator("#elsewhere").textContent(), "");
+  // Another path, other wishes.
+  await example(page, 6);
+  await doing(page, "done");
+  await card.click();
+  assert.deepEqual([await verdict(), await praise()], ["pinned for another path", 0]);
+  await page.waitForFunction(() => /pinned for another path/.test(document.querySelector("#elsewhere").textContent));
+  assert.match(await card.locator(".quality").textContent(), /% of its path.*× its path/);
+  await shot(page, "pinned-for-another");
+  await button(page, "Undo").click();
+  await doing(page, "done");
+  assert.deepEqual([await verdict(), await praise()], [met, praised]);
+  await tab(page, "wishes");
+  await page.locator("#transmission").fill("12");
+  await page.keyboard.press("Tab");
+  await doing(page, "done");
+  assert.deepEqual([await verdict(), await praise()], ["pinned with other wishes", 0]);
+  assert.deepEqual(console_, []);
+  await context.close();
+  await end();
+});
+
+test("a reload keeps what is built: the linkage that is chosen, the sizes, the same plates to the byte", async () => {
+  const { page, said: console_, context, end } = await begun();
+  await doing(page, "done");
+  await page.locator(".pick", { hasText: "Linkage 3" }).click();
+  await tab(page, "build");
+  const sizes = { "#thickness_mm": "5", "#hole_mm": "3.2", "#margin_mm": "4.5", "#kerf_mm": "0.15" };
+  for (const [id, size] of Object.entries(sizes)) await page.locator(id).fill(size);
+  const sheet = ["Width of the sheet", "Height of the sheet"].map((name) => page.getByLabel(name));
+  for (const [i, field] of sheet.entries()) await field.fill(String(900 - 100 * i));
+  const plates = async () => {
+    await page.waitForFunction(() => document.querySelector("#plates svg")?.checkVisibility());
+    assert.equal(await page.locator("#plates-of").textContent(), "Plates of Linkage 3");
+    return saved(page, () => page.locator("#save-dxf").click());
+  };
+  const before = await plates();
+  await page.reload();
+  await page.waitForSelector("#strip li");
+  assert.deepEqual(await pressed(page), ["Linkage 3"], "from the first card on");
+  await doing(page, "done");
+  assert.deepEqual(await pressed(page), ["Linkage 3"]);
+  await tab(page, "build");
+  for (const [id, size] of Object.entries(sizes)) assert.equal(await page.locator(id).inputValue(), size);
+  assert.deepEqual(await Promise.all(sheet.map((field) => field.inputValue())), ["900", "800"]);
+  assert.deepEqual(await plates(), before);
+  await shot(page, "built-again");
+  assert.deepEqual(console_, []);
+  await context.close();
+  await end();
+});
+
+test("a linkage that jams is not praised, and a wish that forbids it is one click", async () => {
+  const { page, said: console_, context, end } = await begun();
+  // What the studio answers, with a worst angle at which it jams for as long as no angle is asked for.
+  let isAsked = false;
+  await page.routeWebSocket(/live/, (socket) => {
+    const server = socket.connectToServer();
+    socket.onMessage((text) => {
+      isAsked = JSON.parse(text).transmission_deg_min !== undefined;
+      server.send(text);
+    });
+    server.onMessage((text) => {
+      const answer = JSON.parse(text);
+      const jamming = isAsked ? {} : { transmission_deg: 3.2 };
+      socket.send(JSON.stringify({ ...answer, candidates: answer.candidates.map((one) => ({ ...one, ...jamming })) }));
+    });
+  });
+  await page.reload();
+  await tab(page, "wishes");
+  await page.locator("#transmission").fill("");
+  await page.keyboard.press("Tab");
+  await doing(page, "done");
+  const card = page.locator(".pick").first();
+  assert.match(await card.locator(".quality").textContent(), /transmission 3\.2° \(it jams\)/);
+  assert.equal(await card.locator(".verdict").textContent(), "meets what was asked, but jams");
+  assert.match(await status(page), /^Best: .* meets what was asked, but jams/);
+  assert.equal(await card.locator(".verdict.good").count(), 0);
+  await shot(page, "jams");
+  await button(page, "It jams: ask for at least 30°").click();
+  await doing(page, "done");
+  assert.equal(await page.locator("#transmission").inputValue(), "30");
+  assert.match(await card.locator(".verdict").textContent(), /^meets everything/);
+  assert.ok(await page.locator("#helps").isHidden());
+  await button(page, "Undo").click();
+  assert.equal(await page.locator("#transmission").inputValue(), "");
+  // A box that was scaled shows four digits of its size; an empty board has no lengths.
+  await page.locator("#path-width").fill("77.7");
+  await page.keyboard.press("Tab");
+  assert.match(await page.locator("#left").inputValue(), /^-82\.[67]\d?$/);
+  await button(page, "Clear").click();
+  assert.equal(await page.locator("#longest-said").textContent(), "at most 3 × the path");
+  assert.deepEqual(console_, []);
+  await context.close();
+  await end();
+});
+
 test("the details say whether they are of what stands, and what they save is what they show", async () => {
   const { page, said: console_, context, end } = await begun();
   await doing(page, "done");
   await page.locator("#details summary").click();
-  await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
-  );
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "Linkage 1 of walking-leg");
   await page.locator("#format").selectOption("json");
   const save = async () => JSON.parse((await saved(page, () => page.locator("#export").click())).text);
   const before = await save();
@@ -161,7 +295,9 @@ test("the details say whether they are of what stands, and what they save is wha
   await page.mouse.move(x, y);
   await page.mouse.down();
   for (let i = 1; i <= 10; i += 1) await page.mouse.move(x, y - i);
-  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-leg, as it stood");
+  await page.waitForFunction(
+    () => document.querySelector("#details-title").textContent === "Linkage 1 of walking-leg, as it stood",
+  );
   assert.deepEqual(
     await page.evaluate(async () => {
       const asked = [];
@@ -181,9 +317,7 @@ test("the details say whether they are of what stands, and what they save is wha
   );
   await page.mouse.up();
   await doing(page, "done");
-  await page.waitForFunction(
-    () => document.querySelector("#details-title").textContent === "walking-leg, as it stands",
-  );
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "Linkage 1 of walking-leg");
   assert.notDeepEqual(await save(), before);
   assert.deepEqual(console_, []);
   await context.close();

@@ -208,7 +208,8 @@ test("boxes are drawn with the mouse and with keys", async () => {
   const { page, said, context } = await opened(home.browser, address);
   await doing(page, "done");
   const board = await page.locator("#board svg").boundingBox();
-  await page.getByRole("button", { name: "Draw the pivot box" }).click();
+  await page.getByRole("button", { name: "Draw the box for the pivots" }).click();
+  assert.equal(await page.locator("#desk-said").textContent(), "Drag from corner to corner.");
   await page.mouse.move(board.x + 120, board.y + board.height - 60);
   await page.mouse.down();
   await page.mouse.move(board.x + 620, board.y + board.height / 2, { steps: 5 });

@@ -4,6 +4,7 @@
 import { element } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
+import { pinnedFor } from "./task";
 
 /** Sizes: the setting of the studio, its label, and what stands in an empty field. */
 const SIZES: [string, string, string][] = [
@@ -27,15 +28,18 @@ export class BuildPanel {
         "aria-label": i === 0 ? "Width of the sheet" : "Height of the sheet",
       }) as HTMLInputElement,
   );
+  private title = element("h2", { id: "plates-of" });
   private plates = element("div", { id: "plates", role: "img", "aria-label": "The plates to cut", hidden: "" });
   private fault = element("p", { class: "fault", role: "alert" });
   private layers = element("pre", { id: "layers", tabindex: "0", "aria-label": "Layers and clearances" });
   private dxf = element("button", { id: "save-dxf" }, ["DXF for a laser"]) as HTMLButtonElement;
   private save = element("button", { id: "save-archive" }, ["Save everything (zip)"]) as HTMLButtonElement;
   private legs = element("p", { class: "note", hidden: "" }, [
-    "These are the plates of one leg: cut them once for each leg.",
+    "These are the plates of one leg: cut crank, coupler and follower once for each leg, the ground once.",
   ]);
   private nothing = element("p", { class: "note" }, ["Draw a path first: its linkage is built here."]);
+  /** That it was found for something else than what is drawn. */
+  private elsewhere = element("p", { class: "note", id: "elsewhere" });
   private timer = 0;
   private isOpen = false;
   private shownOf = "";
@@ -46,6 +50,8 @@ export class BuildPanel {
     /** Its number in the list, for the names of files. */
     private rank: () => string,
     private isWalker: () => boolean,
+    /** A size is another one. */
+    changed: () => void,
   ) {
     const rows = SIZES.map(([key, label, usual]) => {
       const field = element("input", {
@@ -56,14 +62,17 @@ export class BuildPanel {
         id: key,
       }) as HTMLInputElement;
       this.fields.set(key, field);
-      field.addEventListener("input", () => this.later());
       return element("label", {}, [
         label,
         " ",
         element("span", { class: "field" }, [field, element("span", {}, ["mm"])]),
       ]);
     });
-    for (const field of this.sheet) field.addEventListener("input", () => this.later());
+    for (const field of this.all().values())
+      field.addEventListener("input", () => {
+        changed();
+        this.later();
+      });
     const sheet = element("div", { class: "sheet" }, ["Sheet ", this.sheet[0], " × ", this.sheet[1], " mm"]);
     place.append(
       element("h2", {}, ["Build it"]),
@@ -71,14 +80,28 @@ export class BuildPanel {
       element("div", { class: "sizes" }, rows),
       sheet,
       this.fault,
+      this.title,
       this.plates,
       this.legs,
-      element("div", { class: "row" }, [this.dxf, this.save]),
+      element("div", { class: "row" }, [this.dxf, this.save, this.elsewhere]),
       element("details", { open: "" }, [element("summary", {}, ["Layers and clearances"]), this.layers]),
     );
     const sizes = ["hole_mm", "margin_mm", "kerf_mm", "sheet_mm"];
     this.dxf.addEventListener("click", () => void this.file("dxf-plates", "-plates.dxf", sizes));
     this.save.addEventListener("click", () => void this.file("archive", ".zip"));
+  }
+
+  /** All fields, by what they are remembered under. */
+  private all = () =>
+    new Map([...this.fields, ...this.sheet.map((field, i): [string, HTMLInputElement] => [`sheet${i}`, field])]);
+
+  /** What stands in the fields. */
+  get sizes(): Record<string, string> {
+    return Object.fromEntries([...this.all()].map(([key, { value }]) => [key, value]));
+  }
+
+  set sizes(sizes: Record<string, string>) {
+    for (const [key, field] of this.all()) field.value = sizes[key] ?? "";
   }
 
   private set(): Record<string, string> {
@@ -109,9 +132,12 @@ export class BuildPanel {
   private async show() {
     const chosen = this.host.chosen();
     this.legs.hidden = !chosen || !this.isWalker();
-    for (const part of [this.plates, this.dxf, this.save, this.layers.parentElement as HTMLElement])
+    this.title.textContent = `Plates of ${this.host.name()}`;
+    for (const part of [this.title, this.plates, this.dxf, this.save, this.layers.parentElement as HTMLElement])
       part.hidden = !chosen;
     this.nothing.hidden = chosen !== null;
+    const elsewhere = chosen ? pinnedFor(chosen.task, this.host.task()) : "";
+    this.elsewhere.textContent = elsewhere && `This linkage is ${elsewhere}: its plates are not of this drawing.`;
     if (!chosen) return;
     const [of, set] = [api.drawn(chosen), this.set()];
     const key = JSON.stringify([of, set]);

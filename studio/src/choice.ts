@@ -22,6 +22,9 @@ export function isSame(one: Shown, other: Shown): boolean {
   return (one.number !== undefined && one.number === other.number) || unlike(one, other) < ANOTHER;
 }
 
+/** Whether two are one linkage to the last digit that is seen. */
+export const isTheSame = (one: Shown, other: Shown) => unlike(one, other) < 1e-6;
+
 /** The choice among candidates that have changed: the same linkage, or what it has become; null where it is gone. */
 export function followed(choice: Choice, candidates: Shown[]): Choice {
   if (!choice || "pin" in choice) return choice;

@@ -2,8 +2,7 @@
 
 import { takesText, watchFiles } from "./files";
 import { changing } from "./focus";
-
-const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
+import { byId } from "./ids";
 
 /** What the controls ask of the page. */
 export interface Acts {
@@ -34,9 +33,7 @@ export function listenToControls(acts: Acts) {
   click("problem-file", acts.saveProblem);
   click("linkage-file", acts.saveLinkage);
   click("take-coordinates", () => acts.takeText(byId<HTMLTextAreaElement>("coordinates").value, ""));
-  click("hide-hints", () =>
-    changing(byId("gallery"), acts.hideHints, document.querySelector<SVGElement>("#board svg") ?? byId("board")),
-  );
+  click("hide-hints", () => changing(byId("gallery"), acts.hideHints));
   check("walker", acts.walk);
   check("closed", acts.close);
   watchFiles(byId("board"), byId<HTMLInputElement>("file"), acts.takeText, acts.takePicture);

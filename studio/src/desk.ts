@@ -10,6 +10,8 @@ export interface Host {
   task(): Task;
   /** The linkage that is chosen in the strip. */
   chosen(): Solution | null;
+  /** What that one is called. */
+  name(): string;
   /** What is pinned, to be compared. */
   pinned(): Solution[];
   /** Takes another problem. */

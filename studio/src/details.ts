@@ -10,8 +10,8 @@ import { changing } from "./focus";
 import type { Task } from "./messages";
 
 const FORMATS: [string, string, string][] = [
-  ["dxf", "dxf", "DXF: skeleton, curve, target"],
   ["dxf-plates", "dxf", "DXF: plates to cut"],
+  ["dxf", "dxf", "DXF: skeleton for CAD, not to cut"],
   ["svg", "svg", "SVG in millimetres"],
   ["svg-plates", "svg", "SVG: plates to cut"],
   ["stl", "stl", "STL: plates to print"],
@@ -139,7 +139,7 @@ export class DetailsPanel {
   private jobTask: Task | null = null;
   /** What is shown, where it came from, and what its files are called. */
   private details: api.Details | null = null;
-  private of: { source: api.Source; task: Task | null; name: string } | null = null;
+  private of: { source: api.Source; task: Task | null; name: string; title: string } | null = null;
   private player: AnglesPlayer | null = null;
   private shownOf = "";
   private loading = "";
@@ -193,9 +193,13 @@ export class DetailsPanel {
   }
 
   private wanted(): typeof this.of {
-    if (this.job) return { source: { job: this.job }, task: this.jobTask, name: `${this.job.name}-${this.job.rank}` };
+    if (this.job) {
+      const { name, rank } = this.job;
+      return { source: { job: this.job }, task: this.jobTask, name: `${name}-${rank}`, title: `${name}, candidate` };
+    }
     const chosen = this.host.chosen();
-    return chosen && { source: api.drawn(chosen), task: chosen.task, name: chosen.task.name };
+    const title = `${this.host.name()} of ${chosen?.task.name}`;
+    return chosen && { source: api.drawn(chosen), task: chosen.task, name: chosen.task.name, title };
   }
 
   /** While the hand moves nothing is asked; a moment after it rests, once. */
@@ -242,7 +246,8 @@ export class DetailsPanel {
       },
       this.save,
     );
-    this.title.textContent = `${this.details.name}, ${this.of && "job" in this.of.source ? "candidate" : same ? "as it stands" : "as it stood"}`;
+    // The same one may have another place by now.
+    this.title.textContent = same ? now.title : `${this.of?.title}, as it stood`;
   }
 
   private show(details: api.Details) {
@@ -268,8 +273,10 @@ export class DetailsPanel {
     } as never);
     this.player.show({ key: "", name: "", ...shown });
     this.words.replaceChildren(
-      ...marked(details.summary, "header > p, header > ul"),
       ...marked(details.words, "article > :not(h2)"),
+      // Of all that was found, and the best of it: that may be another one.
+      element("h3", {}, ["The search and its best linkage"]),
+      ...marked(details.summary, "header > p, header > ul"),
     );
     this.panel.dataset.shown = this.shownOf;
   }

@@ -6,7 +6,11 @@ const controls = (place: HTMLElement) =>
   [...place.querySelectorAll<HTMLElement>(CONTROLS)].filter((one) => one.getClientRects().length > 0);
 
 /** Changes a part of the page. If that takes the focused control away, the one in its place is focused, or `instead`. */
-export function changing(place: HTMLElement, change: () => void, instead: HTMLElement | SVGElement) {
+export function changing(
+  place: HTMLElement,
+  change: () => void,
+  instead = document.querySelector<HTMLElement | SVGElement>("#board svg") ?? place,
+) {
   const focused = document.activeElement as HTMLElement | null;
   const at = focused && place.contains(focused) ? controls(place).indexOf(focused) : -1;
   change();

@@ -3,7 +3,7 @@
 import { element, figure, minus } from "../../src/report/html/player/svg.mjs";
 import { changing } from "./focus";
 import type { Relaxation, Task, Value } from "./messages";
-import { EXACT, withoutControls } from "./task";
+import { EXACT, type Instead, withoutControls } from "./task";
 
 export const NAMES: Record<string, [string, string]> = {
   "require.type": ["driven by", ""],
@@ -64,8 +64,8 @@ export class Helps {
     private take: (make: (task: Task) => Task, said: string) => void,
   ) {}
 
-  /** `instead`: another task that is offered too, and what it is. */
-  show(relaxations: Relaxation[], unit: string | undefined, instead: { task: Task; said: string } | null) {
+  /** `instead`: another task that is offered too. */
+  show(relaxations: Relaxation[], unit: string | undefined, instead: Instead) {
     const key = JSON.stringify([relaxations, unit, instead]);
     if (key === this.told) return;
     this.told = key;
@@ -83,18 +83,14 @@ export class Helps {
       ]);
     });
     if (instead) {
-      const button = element("button", {}, [instead.said]);
+      const button = element("button", {}, [instead.button ?? instead.said]);
       button.addEventListener("click", () => this.take(() => instead.task, instead.said));
       items.push(element("li", {}, [button]));
     }
-    changing(
-      this.list,
-      () => {
-        this.list.hidden = items.length === 0;
-        this.list.replaceChildren(...items);
-      },
-      document.querySelector<SVGElement>("#board svg") ?? this.list,
-    );
+    changing(this.list, () => {
+      this.list.hidden = items.length === 0;
+      this.list.replaceChildren(...items);
+    });
   }
 }
 
@@ -138,13 +134,9 @@ export class Kept {
       item.append(drop);
       return item;
     });
-    changing(
-      this.place,
-      () => {
-        this.place.hidden = all.length === 0;
-        list.replaceChildren(...items);
-      },
-      document.querySelector<SVGElement>("#board svg") ?? this.place,
-    );
+    changing(this.place, () => {
+      this.place.hidden = all.length === 0;
+      list.replaceChildren(...items);
+    });
   }
 }

@@ -15,7 +15,8 @@ import { Gallery } from "./gallery";
 import type { Linkage } from "./grab";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
-import { remember, remembered } from "./memory";
+import { byId, input } from "./ids";
+import { type Place, remember, remembered } from "./memory";
 import type { Answer, AnyAsk, Point, Shown, Task } from "./messages";
 import { nameFault } from "./names";
 import { Nine } from "./nine";
@@ -44,9 +45,10 @@ interface State {
   photo: Placed | null;
   view: View;
   answer: Answer | null;
-  chosen: { pin: number } | { candidate: number } | null;
+  chosen: Place;
   byHand: Shown | null;
   isWalker: boolean;
+  lengths: number;
 }
 
 /** Milliseconds after which a view that rests is remembered. */
@@ -55,20 +57,22 @@ const VIEW_RESTS = 300;
 const CONTROLS_WAIT = 100;
 
 const TOOLS: Tool[] = ["draw", "points", "grab", "pivots_in", "footprint_in", "photo-move", "photo-scale"];
+const CORNERS = "Drag from corner to corner.";
 /** What a tool is for, said when it is taken for the first time. */
 const TOOL_SAID: Partial<Record<Tool, string>> = {
   points: "A click on the path puts a point there, a click beside it one behind the last. Clear begins anew.",
+  pivots_in: CORNERS,
+  footprint_in: CORNERS,
   grab: "Drag a joint of the linkage, or the middle of its crank to turn it. Drag elsewhere to move the board.",
 };
-
-const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
-const input = (id: string) => byId<HTMLInputElement>(id);
 
 class Page {
   private hints = true;
   /** Whether the linkage moved when it was taken into the hand. */
   private wasPlaying = false;
   private begunWith = "null";
+  /** How many times as long as at first all lengths have been made. */
+  private lengths = 1;
   private filling: ReturnType<typeof setTimeout> | undefined;
   private looking: ReturnType<typeof setTimeout> | undefined;
   /** What the page has written among the coordinates; anything else is the user's, until it is taken. */
@@ -126,6 +130,7 @@ class Page {
   private desk = new Desk(byId("desk"), byId("share"), {
     task: () => this.task,
     chosen: () => this.scene.chosen(),
+    name: () => this.scene.name(),
     pinned: () => this.showing.pinned,
     take: (task) => this.open(tasks.taskOf({ ...task, version: 0 })),
     keep: (one) => this.keepShown(one),
@@ -153,6 +158,7 @@ class Page {
     this.desk.host,
     () => this.scene.rank(),
     () => this.board.isWalker,
+    () => this.keep(),
   );
   private tabs = new Tabs(document.querySelector(".rail") as HTMLElement, (tab) => this.build.open(tab === "build"));
 
@@ -179,9 +185,7 @@ class Page {
         const hips = on && this.scene.chosen()?.shown.linkage;
         const ground = tasks.boxOf(this.task.points)?.[1] ?? 0;
         if (hips && Math.min(hips.A[1], hips.B[1]) < ground)
-          this.desk.say(
-            "The hips lie below the ground. Under Wishes tick “both fixed pivots inside a box”: the box of a walking machine lies above its path.",
-          );
+          this.desk.say("The hips lie below the ground: tick “both fixed pivots inside a box” under Wishes.");
       },
       close: (closed) => this.replace(tasks.settled({ ...this.task, closed })),
       hideHints: () => {
@@ -271,19 +275,21 @@ class Page {
   async begin() {
     const kept = remembered();
     let view = kept?.view;
+    let { answer } = kept ?? {};
     let from: Linkage | undefined;
     let isWalker = kept ? kept.isWalker === true : EXAMPLES[0].isWalker === true;
     if (kept) {
       ({ hints: this.hints, begunWith: this.begunWith } = kept);
       this.store.task = nameFault(kept.task.name) === null ? kept.task : { ...kept.task, name: "drawing" };
       this.showing.pinned = kept.pinned;
+      this.build.sizes = kept.build ?? {};
     }
     try {
       const begunWith = await api.beginning();
       const given = JSON.parse(begunWith) as AnyAsk | null;
       if (given && this.begunWith !== begunWith) {
         if (kept) this.store.note();
-        view = undefined;
+        view = answer = undefined;
         isWalker = false;
         this.store.task = tasks.taskOf(given);
         from = given.from;
@@ -302,6 +308,12 @@ class Page {
     this.showUnderlay();
     this.exchange.begin();
     this.put(this.task, from ? { fresh: true, from } : {});
+    if (answer) {
+      const { version } = this.store;
+      this.showing.restore({ ...answer, version }, version, kept?.chosen ?? null);
+      this.draw();
+      this.keep();
+    }
     void this.desk.begin();
     this.scene.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
   }
@@ -322,14 +334,21 @@ class Page {
     this.store.note();
     if (this.underlay.placed) this.underlay.lengthsTimes(by);
     this.board.look(rescaled(this.board.looking, by));
+    this.makeLengths(this.lengths * by);
     this.put(tasks.withLengthsTimes(this.task, by), {});
+  }
+
+  /** What is pinned for this path grows with it, and shrinks with a step back. */
+  private makeLengths(lengths: number) {
+    if (lengths !== this.lengths) this.showing.pinsTimes(this.task, lengths / this.lengths);
+    this.lengths = lengths;
   }
 
   private use(tool: Tool) {
     this.board.tool = tool;
     const said = TOOL_SAID[tool];
-    delete TOOL_SAID[tool];
-    if (said && this.task.points.length > 0) this.desk.say(said);
+    if (said !== CORNERS) delete TOOL_SAID[tool];
+    if (said && (said === CORNERS || this.task.points.length > 0)) this.desk.say(said);
     for (const button of document.querySelectorAll("[id^=tool-]"))
       button.setAttribute("aria-pressed", String(button.id === `tool-${tool}`));
     if (tool === "grab") this.grab();
@@ -405,7 +424,7 @@ class Page {
     }
     if (isStale)
       this.desk.say(
-        "The figures published for this problem hold for it as it was opened: they are let go. Undo brings them back.",
+        "The figures published for this problem hold for it as it was opened: they go. Undo brings them back.",
       );
     this.size.show(task);
     if (isFresh) {
@@ -455,6 +474,7 @@ class Page {
     const [short, ...rest] = answer.said.split("\n");
     const isSaid = answer.sure !== undefined;
     this.sure.show(answer.sure ?? null, isSaid ? [short, ...rest].join("\n") : "");
+    if (answer.doing === "done") this.keep();
     this.desk.changed(answer.doing === "done");
     this.build.later();
     const status = head + (isSaid ? short : answer.said);
@@ -465,8 +485,13 @@ class Page {
   private draw() {
     byId("nothing").hidden = this.scene.draw() > 0;
     const { answer } = this.showing;
-    this.helps.show(answer?.relaxations ?? [], this.task.unit, tasks.nearestInstead(this.task, answer));
-    byId<HTMLButtonElement>("linkage-file").disabled = !this.scene.chosen();
+    const chosen = this.scene.chosen();
+    // What is asked now is not what a pinned one jams for; one in the hand is changed by the hand.
+    const isFound = chosen?.task === this.task && !this.byHand.shown && answer?.doing === "done";
+    const instead =
+      tasks.nearestInstead(this.task, answer) ?? (isFound ? tasks.unjammed(this.task, chosen.shown) : null);
+    this.helps.show(answer?.relaxations ?? [], this.task.unit, instead);
+    byId<HTMLButtonElement>("linkage-file").disabled = !chosen;
   }
 
   private choose(index: number) {
@@ -475,6 +500,7 @@ class Page {
       this.byHand.take(null);
     }
     this.showing.choose(index, this.task);
+    this.keep();
     this.draw();
     this.desk.chose();
     this.build.later();
@@ -485,24 +511,38 @@ class Page {
     if (!this.showing.pin(one)) return this.desk.say(`${MOST_PINNED} are pinned already: unpin one of them first.`);
     this.keep();
     this.draw();
+    this.desk.say(
+      `Pinned ${this.showing.pinned.length} is its card, the last one; its curve on the board has that card's colour.`,
+    );
   }
 
-  /** Pins a candidate to compare others with it, or lets a pinned one go. */
+  /** Pins a candidate to compare others with it; lets one go that is pinned. */
   private pin(index: number) {
     const one = this.showing.all(this.task)[index];
-    if (index < this.showing.candidates().length) {
+    const pin = index < this.showing.candidates().length ? this.showing.pinOf(one) : one;
+    if (!pin) {
       this.guide.done("pin");
       return this.keepShown(one);
     }
-    this.showing.unpin(one);
+    this.showing.unpin(pin);
     this.keep();
     this.draw();
   }
 
   private keep() {
     const { task, begunWith, hints } = this;
-    const { isWalker } = this.board;
-    remember({ task, pinned: this.showing.pinned, begunWith, hints, view: this.board.looking, isWalker });
+    const { pinned, answer } = this.showing;
+    remember({
+      task,
+      pinned,
+      begunWith,
+      hints,
+      view: this.board.looking,
+      isWalker: this.board.isWalker,
+      build: this.build.sizes,
+      // What is found for another task is nothing for this one.
+      ...(answer?.version === this.store.version ? { answer, chosen: this.showing.chosenPlace() } : {}),
+    });
   }
 
   private say(text: string) {
@@ -542,6 +582,7 @@ class Page {
       chosen: this.showing.chosenPlace(),
       byHand: this.byHand.shown,
       isWalker: this.board.isWalker,
+      lengths: this.lengths,
     };
   }
 
@@ -554,6 +595,7 @@ class Page {
     if (then.photo) this.underlay.place(then.photo);
     this.board.look(then.view);
     this.walk(then.isWalker);
+    this.makeLengths(then.lengths);
     this.put(then.task, {});
     const { answer, chosen } = then;
     if (answer && answer.candidates.length > 0) this.showing.restore(answer, this.store.version, chosen);

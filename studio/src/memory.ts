@@ -1,6 +1,6 @@
 // What is remembered: steps to go back, and everything over a reload.
 
-import type { Solution, Task } from "./messages";
+import type { Answer, Solution, Task } from "./messages";
 import type { View } from "./view";
 
 const KEY = "linkwright-studio";
@@ -13,7 +13,15 @@ export interface Remembered {
   hints: boolean;
   view?: View;
   isWalker?: boolean;
+  /** What was found for the task, and which of it is chosen. */
+  answer?: Answer;
+  chosen?: Place;
+  /** What stands in the fields of the Build tab. */
+  build?: Record<string, string>;
 }
+
+/** Which linkage is chosen, by its place; null: none but the best. */
+export type Place = { pin: number } | { candidate: number } | null;
 
 /** What this tab has kept under a name; of a new tab what the latest has. */
 export function kept<What>(key: string): What | null {
@@ -40,7 +48,11 @@ export function remembered(): Remembered | null {
   const what = kept<Remembered>(KEY);
   if (!what || !Array.isArray(what.task?.points) || !Array.isArray(what.pinned)) return null;
   const view = [what.view?.x, what.view?.y, what.view?.scale].every(Number.isFinite) ? what.view : undefined;
-  return { ...what, view, pinned: what.pinned.filter((one) => one?.shown?.linkage && Array.isArray(one.task?.points)) };
+  const pinned = what.pinned.filter((one) => one?.shown?.linkage && Array.isArray(one.task?.points));
+  // The numbers of linkages are those of a connection that is no more.
+  const candidates = what.answer?.candidates?.map(({ number: _, ...shown }) => shown) ?? [];
+  const answer = what.answer && candidates.every((one) => one.linkage) ? { ...what.answer, candidates } : undefined;
+  return { ...what, view, pinned, answer };
 }
 
 export const remember = (what: Remembered) => keep(KEY, what);

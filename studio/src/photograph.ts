@@ -3,11 +3,9 @@
 import { figure } from "../../src/report/html/player/svg.mjs";
 import type { Board } from "./board";
 import { changing } from "./focus";
+import { byId, input } from "./ids";
 import type { Tool } from "./surface";
 import type { Underlay } from "./underlay";
-
-const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
-const input = (id: string) => byId<HTMLInputElement>(id);
 
 export class PhotographPanel {
   constructor(

@@ -1,6 +1,7 @@
 // Requirements and what stands beside the points, as controls with units and plain words.
 
 import { KINDS } from "./boxes";
+import { byId, input } from "./ids";
 import type { Box, Task, Unit } from "./messages";
 import { nameFault } from "./names";
 import {
@@ -10,6 +11,7 @@ import {
   isExact,
   longestTimes,
   pivotsBeside,
+  roundTo,
   settled,
   sizeOf,
   spaceAround,
@@ -20,8 +22,6 @@ import {
   withWeights,
 } from "./task";
 
-const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
-const input = (id: string) => byId<HTMLInputElement>(id);
 const select = (id: string) => byId<HTMLSelectElement>(id);
 
 /** From so many sizes of the path on a slider of a size stands for any. */
@@ -121,7 +121,9 @@ export function listenToRequirements(
 function tellSize({ id, any, most }: (typeof SIZES)[number], times: number | null, { points, unit }: Task) {
   const length = Number(((times ?? 0) * sizeOf(points)).toPrecision(3));
   const text =
-    times === null ? any : `${most} ${Number(times.toPrecision(3))} × the path (${length}${unit ? ` ${unit}` : ""})`;
+    times === null
+      ? any
+      : `${most} ${Number(times.toPrecision(3))} × the path${points.length > 1 ? ` (${length}${unit ? ` ${unit}` : ""})` : ""}`;
   byId(`${id}-said`).textContent = text;
   input(id).setAttribute("aria-valuetext", text);
 }
@@ -135,7 +137,9 @@ export function fillRequirements(task: Task) {
     input(box).checked = task[key] !== undefined;
     byId(numbers).hidden = task[key] === undefined;
     SIDES.forEach((side, i) => {
-      set(prefix + side, task[key]?.[i]);
+      // Shown to four digits of its size; what is not typed over keeps all that it has.
+      const one = task[key];
+      set(prefix + side, one && roundTo(one[i], Math.hypot(one[2] - one[0], one[3] - one[1]) || 1, 4));
     });
   }
   for (const [id, usual] of CHECKS) input(id).checked = (task[id] ?? usual) === usual;

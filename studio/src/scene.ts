@@ -79,6 +79,12 @@ export class Scene {
     return place < found ? String(place + 1) : `pinned-${place - found + 1}`;
   }
 
+  /** What it is called where it is spoken of. */
+  name(): string {
+    const rank = this.rank();
+    return Number(rank) ? `Linkage ${rank}` : rank === "by-hand" ? "your linkage" : rank.replace("pinned-", "Pinned ");
+  }
+
   /** Draws board and cards; gives how many cards there are. */
   draw(): number {
     const { byHand, showing, strip, task } = this.parts;
@@ -87,7 +93,7 @@ export class Scene {
     this.moving = [...all, ...(inHand ? [inHand] : [])].map(({ shown, task }) => movingOf(shown, task.points));
     this.drawBoard();
     const cards = this.moving.slice(0, all.length);
-    strip.show(cards, all, showing.candidates().length, inHand ? -1 : showing.place(), showing.own);
+    strip.show(cards, all, showing.candidates().length, inHand ? -1 : showing.place(), showing.own, task());
     strip.pose(this.clock.part);
     return all.length;
   }

@@ -1,9 +1,11 @@
 // What is shown of all that was found: the candidates of the latest answer, what is pinned, and which one of them the
 // board shows.
 
-import { type Choice, followed, isSame, placeOf } from "./choice";
+import { type Choice, followed, isSame, isTheSame, placeOf } from "./choice";
+import type { Place } from "./memory";
 import type { Answer, Shown, Solution, Task } from "./messages";
 import type { Nine } from "./nine";
+import { isSamePath, shownTimes, withLengthsTimes } from "./task";
 
 export const MOST_PINNED = 3;
 /** An answer that is less than so much better than the one that was brought back does not replace it. */
@@ -63,7 +65,7 @@ export class Showing {
   }
 
   /** Brings back what a step back or forth found. */
-  restore(answer: Answer, version: number, chosen: { pin: number } | { candidate: number } | null) {
+  restore(answer: Answer, version: number, chosen: Place) {
     this.answer = answer;
     this.held = null;
     this.restored = { version, answer };
@@ -132,7 +134,7 @@ export class Showing {
   }
 
   /** Which one is chosen, by its place among those that are remembered. */
-  chosenPlace(): { pin: number } | { candidate: number } | null {
+  chosenPlace(): Place {
     const { choice } = this;
     if (!choice) return null;
     if ("pin" in choice) return { pin: this.pinned.indexOf(choice.pin) };
@@ -151,6 +153,17 @@ export class Showing {
     const colour = colours.find((i) => !this.pinned.some((pin) => pin.colour === i)) ?? 0;
     this.pinned = [...this.pinned, { ...one, colour }];
     return true;
+  }
+
+  /** The pin of a linkage, if it has one. */
+  pinOf({ shown }: Solution): Solution | undefined {
+    return this.pinned.find((pin) => isTheSame(pin.shown, shown));
+  }
+
+  /** What is pinned for a path becomes so many times as large as the path does. */
+  pinsTimes(path: Task, by: number) {
+    for (const pin of this.pinned.filter(({ task }) => isSamePath(task, path)))
+      Object.assign(pin, { shown: shownTimes(pin.shown, by), task: withLengthsTimes(pin.task, by) });
   }
 
   unpin(one: Solution) {

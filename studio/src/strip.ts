@@ -1,13 +1,15 @@
 // The strip of candidates: small pictures that move, with their figures.
 
 import { element, figure, setAll } from "../../src/report/html/player/svg.mjs";
+import { isTheSame } from "./choice";
 import type { Moving } from "./figures";
 import { changing, setChildren } from "./focus";
 import type { Shown, Solution, Task } from "./messages";
 import { Picture } from "./picture";
-import { longestMax, sizeOf } from "./task";
+import { longestMax, pinnedFor, sizeOf } from "./task";
 import {
   type Graded,
+  jams,
   limitedBy,
   marks,
   nearnessInWords,
@@ -41,7 +43,9 @@ const word = (key: string) =>
 
 export const inWords = (shown: Shown) =>
   shown.accepted
-    ? "meets everything that was asked"
+    ? jams(shown)
+      ? "meets what was asked, but jams"
+      : "meets everything that was asked"
     : `not met: ${[...new Set(shown.unmet.map(word))].join(", ") || "a defect"}`;
 
 /** Whether what it misses by is rounding: an error of 1e-14 tells nobody anything. */
@@ -73,6 +77,10 @@ interface Entry {
   chosen: boolean;
   /** Of one that is pinned. */
   colour?: number;
+  /** Of a candidate: whether it is pinned. */
+  isKept: boolean;
+  /** That it is pinned for something else than what stands, if it is. */
+  elsewhere: string;
 }
 
 /** One card of the strip. */
@@ -105,7 +113,7 @@ class Card {
   }
 
   /** Shows a linkage; `part`: where in its motion, drawn even out of sight; null: once it is in sight. */
-  show({ moving, task, name, marks, chosen, colour }: Entry, part: number | null) {
+  show({ moving, task, name, marks, chosen, colour, isKept, elsewhere }: Entry, part: number | null) {
     const { shown } = moving;
     Object.assign(this, { moving, task });
     const few = part !== null;
@@ -113,7 +121,7 @@ class Card {
     const pinned = colour !== undefined;
     setAll(this.node, { class: pinned ? `card pin-${colour}` : "card" });
     const { unit } = task;
-    const texts = [name, `${nearness(shown, unit)}; ${shown.type}`, inWords(shown)];
+    const texts = [name, `${nearness(shown, unit)}; ${shown.type}`, elsewhere || inWords(shown)];
     const size = sizeOf(task.points);
     const limits = {
       longest: longestMax(task),
@@ -130,22 +138,30 @@ class Card {
     const extent = few ? extentOf(moving) : undefined;
     const strays = few && task.closed && !exact ? strayInWords(moving, task.points, size) : "";
     const plain = [sizeInWords(shown.linkage, size, extent), ...[strays, limited].filter((text) => text !== "")];
-    const key = JSON.stringify([texts, graded, plain, marks, shown.accepted, chosen, pinned]);
+    // Figures of another path are told as such, and praise nothing.
+    const aside = (text: string) => element("span", {}, [elsewhere ? text.replace("the path", "its path") : text]);
+    const key = JSON.stringify([elsewhere, texts, graded, plain, marks, shown.accepted, chosen, pinned, isKept]);
     if (key === this.key) return;
     this.key = key;
     [this.title.textContent, this.figures.textContent, this.verdict.textContent] = texts;
     this.marks.replaceChildren(...marks.map((mark) => element("span", {}, [mark])));
     this.quality.replaceChildren(
-      ...graded.map(({ grade, text }) => element("span", { class: grade }, [`${SIGNS[grade]} ${text}`])),
-      ...plain.map((text) => element("span", {}, [text])),
+      ...graded.map(({ grade, text }) =>
+        elsewhere ? aside(text) : element("span", { class: grade }, [`${SIGNS[grade]} ${text}`]),
+      ),
+      ...plain.map(aside),
     );
     // No approval in green beside what is poor.
-    const isPoor = graded.some(({ grade }) => grade === "poor");
-    this.verdict.classList.toggle("good", shown.accepted && !isPoor);
-    this.verdict.classList.toggle("plain", shown.accepted && isPoor);
+    const isNotPraised = elsewhere !== "" || graded.some(({ grade }) => grade === "poor");
+    this.verdict.classList.toggle("good", shown.accepted && !isNotPraised);
+    this.verdict.classList.toggle("plain", elsewhere !== "" || (shown.accepted && isNotPraised));
     setAll(this.pick, { "aria-pressed": String(chosen) });
-    this.pin.textContent = pinned ? "Unpin" : "Pin";
-    setAll(this.pin, { "aria-label": `${pinned ? "Unpin" : "Pin"} ${name.toLowerCase()}` });
+    const act = pinned ? "Unpin" : isKept ? "Pinned" : "Pin";
+    this.pin.textContent = act;
+    setAll(this.pin, {
+      "aria-label": `${act} ${name.toLowerCase()}`,
+      ...(pinned ? {} : { "aria-pressed": String(isKept) }),
+    });
   }
 
   /** Draws what is to be shown, unless it is drawn already. */
@@ -200,8 +216,9 @@ export class Strip {
     return card;
   }
 
-  /** Shows candidates, then what is pinned, each over the target that it was found for; `own`: the number of the user's. */
-  show(all: Moving[], solutions: Solution[], found: number, chosen: number, own: number | null) {
+  /** Shows candidates, then what is pinned, each over the target that it was found for; `now`: the task that stands;
+   * `own`: the number of the user's. */
+  show(all: Moving[], solutions: Solution[], found: number, chosen: number, own: number | null, now: Task) {
     const before = this.shown;
     this.found = found;
     this.shown = all.map((_, i) => (i < found ? this.card(0, i) : this.card(1, i - found)));
@@ -214,7 +231,10 @@ export class Strip {
       const colour = i < found ? undefined : (solutions[i].colour ?? 0);
       const isOwn = own !== null && moving.shown.number === own;
       const tags = [...(isOwn ? ["yours"] : []), ...(marked[i] ?? [])];
-      const entry = { moving, task: solutions[i].task, name, marks: tags, chosen: i === chosen, colour };
+      const { task } = solutions[i];
+      const elsewhere = i < found ? "" : pinnedFor(task, now);
+      const isKept = solutions.slice(found).some(({ shown }) => isTheSame(shown, moving.shown));
+      const entry = { moving, task, name, marks: tags, chosen: i === chosen, colour, isKept, elsewhere };
       this.shown[i].show(entry, all.length <= MANY ? this.part : null);
     });
     if (this.shown.length !== before.length || this.shown.some((card, i) => card !== before[i])) {

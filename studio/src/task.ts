@@ -1,6 +1,7 @@
 // What is asked, kept in step with itself: lists beside the points are as long as the points are many.
 
-import type { Answer, AnyAsk, Box, Point, Task } from "./messages";
+import type { Answer, AnyAsk, Box, Point, Shown, Task } from "./messages";
+import { jams } from "./words";
 
 /** So many points have all their linkages told. */
 export const NINE = 9;
@@ -93,12 +94,15 @@ export function withExtent(task: Task, times: number | null): Task {
 export const withoutControls = (kept: Record<string, string> | undefined): [string, string][] =>
   Object.entries(kept ?? {}).filter(([key]) => key !== LONGEST && key !== EXTENT);
 
+/** The numbers of a text. */
+const NUMBER = /[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?/gi;
+
 /** The same problem with all lengths so many times as long. */
 export function withLengthsTimes(task: Task, by: number): Task {
   const length = (value: number) => Number((value * by).toPrecision(12));
   const box = (one: Box | undefined) => one?.map(length) as Box | undefined;
   const isLength = (key: string) => [LONGEST, EXTENT, ...BOUND_LENGTHS, ...BOUND_PLACES].includes(key);
-  const all = (text: string) => text.replace(/[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?/gi, (n) => String(length(Number(n))));
+  const all = (text: string) => text.replace(NUMBER, (n) => String(length(Number(n))));
   const kept = Object.entries(task.kept ?? {}).map(([key, text]) => [key, isLength(key) ? all(text) : text]);
   return settled({
     ...task,
@@ -109,6 +113,15 @@ export function withLengthsTimes(task: Task, by: number): Task {
     footprint_in: box(task.footprint_in),
     kept: task.kept && Object.fromEntries(kept),
   });
+}
+
+/** The same linkage, as large for a path that is so many times as large. */
+export function shownTimes(shown: Shown, by: number): Shown {
+  const { A, B, a, b, c, d, e, ...signs } = shown.linkage;
+  const place = ([x, y]: number[]) => [x * by, y * by] as Point;
+  const linkage = { ...signs, A: place(A), B: place(B), a: a * by, b: b * by, c: c * by, d: d * by, e: e * by };
+  const within = shown.certified_within && shown.certified_within * by;
+  return { ...shown, linkage, rms: shown.rms * by, max: shown.max * by, certified_within: within };
 }
 
 /** What is asked of the linkage, of a path that is drawn anew: what belonged to the points of another is gone. */
@@ -264,6 +277,23 @@ function asked(task: Task): string {
   ]);
 }
 
+/** Whether two say the same to nine digits: lengths made larger and small again lose the last ones. */
+const isAlike = (one: string, other: string) => {
+  const [p, q] = [one, other].map((text) => text.replace(NUMBER, (n) => String(Number(Number(n).toPrecision(9)))));
+  return p === q;
+};
+
+export const isSamePath = (...both: [Task, Task]) => {
+  const [p, q] = both.map(({ points, closed, unit = "mm" }) => JSON.stringify([points, closed, unit]));
+  return isAlike(p, q);
+};
+
+/** Says that a pinned linkage was found for something else than what stands; empty: for the same. */
+export function pinnedFor(pin: Task, now: Task): string {
+  if (!isSamePath(pin, now)) return "pinned for another path";
+  return isAlike(asked(pin), asked(now)) ? "" : "pinned with other wishes";
+}
+
 /** Whether two are one problem under other names. */
 export function isSameButForName(one: Task, other: Task): boolean {
   const nameless = ({ name: _n, source: _s, ...rest }: Task) => JSON.stringify(Object.entries(rest).sort());
@@ -276,8 +306,14 @@ export function withoutStale(before: Task, task: Task): Task {
   return expect && expect.of === before.expect?.of && asked(task) !== asked(before) ? rest : task;
 }
 
+/** Another task that is offered, what it is, and what its button says if that is more. */
+export type Instead = { task: Task; said: string; button?: string } | null;
+
+/** A least transmission angle, degrees, with which a linkage runs freely. */
+const FREELY = 30;
+
 /** Where no linkage through nine points does all that is asked: the nearest one instead, within a tolerance. */
-export function nearestInstead(task: Task, answer: Answer | null): { task: Task; said: string } | null {
+export function nearestInstead(task: Task, answer: Answer | null): Instead {
   const isFor = isExact(task) && answer?.doing === "done" && !answer.candidates.some((one) => one.accepted);
   if (!isFor) return null;
   const tolerance = task.tolerance ?? usualTolerance(task);
@@ -285,6 +321,16 @@ export function nearestInstead(task: Task, answer: Answer | null): { task: Task;
   return {
     task: { ...task, method: undefined, tolerance },
     said: `the nearest linkage within ${within} instead of exactly through the points`,
+  };
+}
+
+/** Where a linkage meets what is asked but jams, and nothing forbids that: a wish that does. */
+export function unjammed(task: Task, shown: Shown): Instead {
+  if (!shown.accepted || !jams(shown) || task.transmission_deg_min) return null;
+  return {
+    task: { ...task, transmission_deg_min: FREELY },
+    said: `least transmission angle ${FREELY}°`,
+    button: `It jams: ask for at least ${FREELY}°`,
   };
 }
 

@@ -30,6 +30,9 @@ export function nearnessInWords({ rms, max }: Pick<Shown, "rms" | "max">, size: 
 /** Worst transmission angles in degrees from which a linkage transmits well, fairly, and poorly. */
 const [WELL, FAIRLY, POORLY] = [40, 25, 10];
 
+/** Whether a linkage hardly moves on somewhere: graded as it is written, 9.96 is 10. */
+export const jams = (shown: Pick<Shown, "transmission_deg">) => Number(shown.transmission_deg.toPrecision(2)) < POORLY;
+
 export function transmissionInWords(deg: number): Graded {
   const angle = `transmission ${deg < 0.05 ? 0 : figure(deg, 2)}°`;
   // Graded as it is written: 39.9 is 40.
