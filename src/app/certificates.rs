@@ -15,7 +15,7 @@ pub enum Unusable {
     /// The record has no certificate that leaves could show.
     #[error("{0}: the record has no certificate; run certify with --leaves first")]
     NoCertificate(String),
-    /// There is no file of leaves.
+    /// The result has no leaves.
     #[error("{0}: there are no leaves; run certify with --leaves first")]
     NoLeaves(String),
     /// The leaves are too large.

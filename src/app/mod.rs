@@ -7,7 +7,7 @@
 //! | [`comparison`] | measuring the inputs of a comparison: every figure is computed again, and none is taken from a record unchecked |
 //! | [`inputs`] | inputs of the export, comparison and report commands: a result of a run, one linkage of it, or a linkage without a run |
 //! | [`job`] | jobs: one run from a problem to its record, the result's folder and files, checkpoints |
-//! | [`snapping`] | the subject of a snap, and the dimensions that stay as they are |
+//! | [`snapping`] | the subject of a snap, the lengths in stock, and the dimensions that stay as they are |
 //! | [`studio`] | a local page that answers while a target is drawn |
 //! | [`suite`] | the suite: benchmark problems whose answer is known, each run from many seeds, and compared with the population searches at equal evaluations and with published answers |
 //! | [`sweep`] | sweeps: a plan of many problems, its shards of jobs, and their merged rows |

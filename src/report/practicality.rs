@@ -5,7 +5,7 @@ use super::grid::{Colour, Column, Grid, Ink, plain};
 use super::text::{COLUMNS, brief, capitalised, indented, significant, wrapped};
 use super::words::length_suffix;
 use crate::judge::practicality::clearance::PivotDistance;
-use crate::judge::practicality::layers::{Layering, PinPlate, PlatePair, Stack, clear};
+use crate::judge::practicality::layers::{Layering, Passing, PinPlate, PlatePair, Stack, clear};
 use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
 use crate::judge::practicality::sweep::Stretch;
 use crate::judge::practicality::{Closest, Joint, Practicality};
@@ -84,7 +84,6 @@ impl Words {
     /// Returns the stacking, its obstacles and the plates that pass over ends of pins, one line for each. A pin may have
     /// a head as wide as the plates around it.
     pub(super) fn layers(&self, practicality: &Practicality, layering: &Layering) -> Vec<String> {
-        let head = practicality.build.plate_radius - practicality.build.pin_radius;
         const NO_STACK: &str =
             "No stacking of the four plates works, each in one layer, the ground in one piece.";
         const ALWAYS: &str = "What always works: the ground on both sides, in five layers: ground, crank, coupler, \
@@ -100,7 +99,8 @@ impl Words {
             Some(stack) => {
                 let through = |(pin, layer): &(Joint, usize)| self.through(layering, stack, *pin, *layer);
                 out.extend(stack.through.iter().map(through));
-                out.extend(layering.pins_plates.iter().filter_map(|p| self.over_the_end(stack, p, head)));
+                let head = practicality.build.plate_radius - practicality.build.pin_radius;
+                out.extend(layering.passings(stack, head).map(|passing| self.passing(&passing)));
             }
             None => {
                 out.extend(layering.crossings().map(|p| self.crossing(p)));
@@ -149,31 +149,21 @@ impl Words {
         format!("Pin {} stands through layer {}: {}.", pin.name(), layer + 1, beside.join(", "))
     }
 
-    /// Returns the warning that a plate of another layer passes over an end of a pin, or of a head on it; `None` if it
-    /// does not.
-    fn over_the_end(&self, stack: &Stack, p: &PinPlate, head: f64) -> Option<String> {
-        let layer_of = |link: Link| stack.layers.iter().position(|layer| layer.contains(&link));
-        let (layer, joined) = (layer_of(p.plate)?, p.pin.joins().map(layer_of));
-        let joined: Vec<usize> = joined.into_iter().flatten().collect();
-        let (lowest, highest) = (*joined.iter().min()?, *joined.iter().max()?);
-        let (over, end) = match layer {
-            layer if layer > highest => ("over", highest),
-            layer if layer < lowest => ("under", lowest),
-            _ => return None,
+    fn passing(&self, Passing { pair, plate, end }: &Passing<'_>) -> String {
+        let beside = match pair.closest.value {
+            value if value > 0.0 => format!("{} beside", self.length(value)),
+            _ if plate > end => "over".to_owned(),
+            _ => "under".to_owned(),
         };
-        let near = match p.closest.value {
-            value if value >= head => return None,
-            value if value <= 0.0 => "across it".to_owned(),
-            value => format!("{} from it", self.length(value)),
-        };
-        let (pin, plate) = (p.pin.name(), p.plate.name());
-        Some(format!(
-            "The {plate} (layer {}) passes {over} pin {pin}, {near} ({}): end the pin flush with layer {}, without a \
-             head, nut or motor there, or leave room for it by spacers.",
-            layer + 1,
-            at(&p.closest),
+        format!(
+            "The {} (layer {}) passes {beside} the end of pin {} ({}): end the pin flush with layer {}, without a head, \
+             nut or motor there, or leave room for it by spacers.",
+            pair.plate.name(),
+            plate + 1,
+            pair.pin.name(),
+            at(&pair.closest),
             end + 1
-        ))
+        )
     }
 
     fn distances(&self, distances: &[PivotDistance], hole: f64) -> String {

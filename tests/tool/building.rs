@@ -38,7 +38,7 @@ fn build_tells_layers_distances_and_the_worst_dimension() {
     assert_eq!(run.code, 0, "{}", run.stderr);
     for words in [
         "3 layers, from below: 1 ground; 2 crank and follower; 3 coupler.",
-        "The ground (layer 1) passes under pin C, across it",
+        "The ground (layer 1) passes under the end of pin C",
         "B-C",
         "The worst dimension is c",
     ] {

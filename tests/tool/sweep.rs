@@ -73,6 +73,14 @@ fn planned(at: &Path, out: &str) -> std::path::PathBuf {
     out
 }
 
+/// The folder of the sweep, run by one thread and merged: what others are compared with.
+fn run_by_one_process(at: &Path) -> std::path::PathBuf {
+    let out = planned(at, "first");
+    run_missing(&out, &how(1, &NEVER)).expect("it runs");
+    merge(&out).expect("it merges");
+    out
+}
+
 #[test]
 fn every_job_is_a_row_that_equals_the_run_of_its_problem() {
     let folder = folder(SWEEP);
@@ -132,9 +140,7 @@ fn every_job_is_a_row_that_equals_the_run_of_its_problem() {
 fn the_bytes_do_not_depend_on_threads_order_or_interruptions() {
     let folder = folder(SWEEP);
     let at = folder.path();
-    let first = planned(at, "first");
-    run_missing(&first, &how(1, &NEVER)).expect("it runs");
-    merge(&first).expect("it merges");
+    let first = run_by_one_process(at);
     let wanted = merged(&first);
     for seed in 0..6 {
         let out = planned(at, &format!("out{seed}"));
@@ -224,9 +230,7 @@ fn three_at_a_time(mut commands: Vec<Command>) {
 fn shards_run_by_processes_of_their_own_have_the_bytes_of_one_process() {
     let folder = folder(SWEEP);
     let at = folder.path();
-    let first = planned(at, "first");
-    run_missing(&first, &how(1, &NEVER)).expect("it runs");
-    merge(&first).expect("it merges");
+    let first = run_by_one_process(at);
     for seed in 0..3 {
         let name = format!("out{seed}");
         let out = planned(at, &name);
@@ -256,9 +260,7 @@ fn the_job_array_of_the_document_runs_every_shard() {
     let (recipe, _) = recipe.split_once("```").expect("its end");
     let folder = folder(SWEEP);
     let at = folder.path();
-    let (first, out) = (planned(at, "first"), planned(at, "out"));
-    run_missing(&first, &how(1, &NEVER)).expect("it runs");
-    merge(&first).expect("it merges");
+    let (first, out) = (run_by_one_process(at), planned(at, "out"));
     let place = out.display().to_string();
     let script = format!("set -e\n#{recipe}").replace("/shared/me/sweep", &place).replace("1000", "4");
     assert!(script.contains(&format!("{place}/plan.json")) && script.contains("i += 4"), "{script}");

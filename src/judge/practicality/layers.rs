@@ -60,6 +60,17 @@ pub struct Layering {
     pub stack: Option<Stack>,
 }
 
+/// A plate that passes over the upper end of a pin that it does not join, or under the lower one.
+#[derive(Clone, Debug)]
+pub struct Passing<'a> {
+    /// The pin and the plate, with their least distance.
+    pub pair: &'a PinPlate,
+    /// The layer of the plate, counted from 0.
+    pub plate: usize,
+    /// The layer in which the pin ends.
+    pub end: usize,
+}
+
 /// Returns whether it is proved that two parts stay apart.
 pub fn clear(closest: &Closest) -> bool {
     closest.bound > 0.0
@@ -141,6 +152,20 @@ impl Layering {
         };
         let pins = self.pins.iter().all(|(pair, closest)| !side_by_side(*pair) || clear(closest));
         apart && planes && plates && pins
+    }
+
+    /// Returns the plates of a stacking that pass over or under an end of a pin, nearer to it than `head`: a head that
+    /// reaches so far beyond the pin would be hit there.
+    pub fn passings<'a>(&'a self, stack: &'a Stack, head: f64) -> impl Iterator<Item = Passing<'a>> {
+        let layer_of = |link: Link| stack.layers.iter().position(|layer| layer.contains(&link));
+        self.pins_plates.iter().filter(move |pair| pair.closest.value < head).filter_map(move |pair| {
+            let plate = layer_of(pair.plate)?;
+            let [one, other] = pair.pin.joins().map(layer_of);
+            let (low, high) = (one?.min(other?), one?.max(other?));
+            // A plate between the two ends is in the way of the pin itself.
+            let end = if plate > high { high } else { low };
+            (plate < low || plate > high).then_some(Passing { pair, plate, end })
+        })
     }
 
     /// Returns the plates that pins cross if they pass through their layer.
