@@ -231,6 +231,7 @@ impl Strategy for Second<'_> {
             best: self.found.iter().min_by(compare),
             nearest: None,
             hits: None,
+            is_cut: false,
         }
     }
 

@@ -87,6 +87,8 @@ pub(super) struct Standing<'a> {
     pub(super) nearest: Option<&'a Candidate>,
     /// The repeated hits of the best candidate.
     pub(super) hits: Option<HitsSoFar>,
+    /// Whether the evaluations left do not suffice for another part of a batch, and there is a best candidate.
+    pub(super) is_cut: bool,
 }
 
 /// A search in batches: its state between two batches, and how a batch changes it.
@@ -142,7 +144,7 @@ pub(super) fn drive<S: Strategy>(context: Context<'_>, allowance: Allowance, sea
         if let Some(reason) = stop {
             return reason;
         }
-        let Standing { evaluations: used, draws, best, nearest, hits } = search.standing();
+        let Standing { evaluations: used, draws, best, nearest, hits, is_cut } = search.standing();
         (context.observer)(&Progress {
             best_sum_sq: best.or(nearest).map(|c| c.error.sum_sq),
             accepted: best.is_some_and(|b| b.accepted),
@@ -154,9 +156,9 @@ pub(super) fn drive<S: Strategy>(context: Context<'_>, allowance: Allowance, sea
         if search.is_done(context) {
             return if is_exact { Reason::TargetReached } else { Reason::Converged };
         }
-        let spent = used.max(draws);
+        let spent = if is_cut { limit } else { used.max(draws) };
         if spent >= limit || (spent >= patience && is_none) {
-            return if used < patience { Reason::Stalled } else { Reason::EvaluationLimit };
+            return if used < patience && !is_cut { Reason::Stalled } else { Reason::EvaluationLimit };
         }
     }
 }

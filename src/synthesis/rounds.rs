@@ -71,6 +71,7 @@ impl Strategy for Rounds<'_> {
             best: best.as_ref(),
             nearest: found.first(),
             hits: best.as_ref().map(|_| HitsSoFar { came: hits, wanted: ROUND_HITS }),
+            is_cut: false,
         }
     }
 

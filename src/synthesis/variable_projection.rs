@@ -153,6 +153,7 @@ impl Strategy for Timed<'_> {
             best: best.as_ref(),
             nearest: found.first(),
             hits: best.as_ref().map(|_| HitsSoFar { came: belief.hits().0, wanted: HITS }),
+            is_cut: false,
         }
     }
 

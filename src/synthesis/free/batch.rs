@@ -1,15 +1,19 @@
 //! A batch of rounds: run in parallel, read in their order, followed by the fits of the ends that they share.
+//!
+//! As long as nothing acceptable is known, the evaluations left are shared evenly among the rounds, and all are read. After
+//! that the first rounds that they suffice for are read, and the others are dropped: a search with more evaluations reads
+//! the same rounds and further ones, so that its answer is no worse.
 
-use super::round::{Common, Finished, Round, Setup, finished, is_same, round, unfinished};
+use super::round::{Common, Finished, Reading, Round, Setup, finished, is_same, round, unfinished};
 use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Evaluations;
 use crate::synthesis::Context;
 use crate::synthesis::constants::free::{BATCH, DIFFERENT, LEADING};
-use crate::synthesis::driver::{in_parallel, share, spared};
+use crate::synthesis::driver::{share, spared};
 use crate::synthesis::states::{End, StageState};
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The results of a batch.
 pub(super) struct Batch {
@@ -18,28 +22,28 @@ pub(super) struct Batch {
     /// The least merit on all points of each independent round.
     pub(super) best_merits: Vec<f64>,
     pub(super) ends: Vec<End>,
-    /// Whether every part of it stayed well below its allowance of evaluations.
-    pub(super) ample: bool,
+    /// Whether the evaluations left sufficed for all of it.
+    pub(super) whole: bool,
     /// The state of its stage after it.
     pub(super) stage: StageState,
 }
 
 impl Batch {
     /// Runs the rounds of a batch, the first of which draws from the stream `first`, with at most `left` evaluations;
-    /// `stage` is the state of its stage before it.
+    /// `stage` is the state of its stage before it. All rounds are read, cut short or not, if `all` is set.
     pub(super) fn run(
         context: Context<'_>,
         setup: &Setup<'_>,
         stage: &StageState,
         first: u64,
-        left: u64,
+        (left, all): (u64, bool),
     ) -> Batch {
         let mut batch = Batch {
             draws: 0,
             cost: Evaluations::default(),
             best_merits: Vec::new(),
             ends: Vec::new(),
-            ample: true,
+            whole: true,
             stage: stage.clone(),
         };
         let near_ends = stage.leading.iter().map(|(_, start)| start.clone()).collect();
@@ -49,11 +53,12 @@ impl Batch {
         let split = setup.finishes_apart() && setup.single && first == 0;
         let waves: &[(u64, u64)] = if split { &[(0, 1), (1, BATCH)] } else { &[(0, BATCH)] };
         for &(begin, end) in waves {
-            // Shared evenly among all rounds of the batch, each with the fits that follow from it.
             let left = left.saturating_sub(batch.cost.objective);
+            // Shared evenly among all rounds of the batch, each with the fits that follow from it.
             let (parts, of) = (end - begin, BATCH - begin);
-            let is_exact = batch.wave(&common, begin..end, left / of * parts + left % of * parts / of);
-            if is_exact {
+            let left = if all { left / of * parts + left % of * parts / of } else { left };
+            let is_exact = batch.wave(&common, begin..end, (left, all));
+            if is_exact || !batch.whole {
                 break;
             }
         }
@@ -63,24 +68,27 @@ impl Batch {
         batch
     }
 
-    /// Runs some of the rounds in parallel, then finishes the ends that they share. Returns whether an exact answer is
-    /// among them.
-    fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, left: u64) -> bool {
+    /// Runs some of the rounds in parallel, then finishes the ends that they share, and reads those for which `left`
+    /// evaluations suffice, or `all`. Returns whether an exact answer is among them.
+    fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, (left, all): (u64, bool)) -> bool {
         let setup = common.setup;
-        let (found, bar) = (AtomicU64::new(u64::MAX), self.stage.bar);
-        let run = |i, allowance| round(common, wave.start + i, bar, allowance, &found);
-        let (mut rounds, ample): (Vec<Round>, bool) =
-            in_parallel((left, wave.end - wave.start), run, |round| round.cost.objective);
-        let used: u64 = rounds.iter().map(|round| round.cost.objective).sum();
-        self.ample &= ample;
-        let mut done: Vec<Finished> = Vec::new();
-        if setup.finishes_apart() {
-            done = self.finish(common, &rounds, left.saturating_sub(used));
-            let merits = done.iter().map(|done| (Exact(done.explored), Exact(done.end.merit)));
-            self.stage.finished.extend(merits);
-        } else if let Some(exact) = rounds.iter().position(Round::is_exact) {
+        let (first, bar) = (wave.start, self.stage.bar);
+        let allowed = Allowed { left, parts: wave.end - first, shared: all };
+        let reading = Reading::new(first..wave.end, left);
+        let mut rounds: Vec<Round> =
+            in_order(wave, |index| round(common, index, bar, allowed.of(index - first), &reading));
+        if !setup.finishes_apart()
+            && let Some(exact) = rounds.iter().position(Round::is_exact)
+        {
             // Rounds after it may have been cut short.
             rounds.truncate(exact + 1);
+        }
+        self.keep_those_that_fit(&mut rounds, allowed, |_, round| round.cost.objective);
+        let mut done: Vec<Finished> = Vec::new();
+        if setup.finishes_apart() {
+            done = self.finish(common, &mut rounds, (left, all));
+            let merits = done.iter().map(|done| (Exact(done.explored), Exact(done.end.merit)));
+            self.stage.finished.extend(merits);
         }
         for round in &mut rounds {
             self.draws += round.draws;
@@ -103,27 +111,61 @@ impl Batch {
         exact
     }
 
-    /// Fits the ends of rounds to all points, each once, up to the first exact one.
-    fn finish(&mut self, common: &Common<'_>, rounds: &[Round], left: u64) -> Vec<Finished> {
+    /// Fits the ends of rounds to all points, each once, up to the first exact one. Drops the rounds for which, with the
+    /// fits of their ends, `left` evaluations do not suffice, unless `all` are read.
+    fn finish(
+        &mut self,
+        common: &Common<'_>,
+        rounds: &mut Vec<Round>,
+        (left, all): (u64, bool),
+    ) -> Vec<Finished> {
         let ends = unfinished(common.setup, rounds, &self.stage);
         let parts = ends.len() as u64;
-        let found = AtomicU64::new(u64::MAX);
-        let finishes: Vec<(Vec<Finished>, Evaluations)> = ends
-            .into_par_iter()
-            .enumerate()
-            .map(|(i, end)| finished(common, (i as u64, end), share(left, parts, i as u64), &found))
-            .collect();
+        let used: u64 = rounds.iter().map(|round| round.cost.objective).sum();
+        let shared = Allowed { left: left.saturating_sub(used), parts, shared: true };
+        let allowance = |i: u64, round: &Round| {
+            if all { shared.of(i) } else { left.saturating_sub(round.cost.objective) }
+        };
+        let reading = Reading::new(0..parts, u64::MAX);
+        let mut finishes: Vec<(usize, Vec<Finished>, Evaluations)> = in_order(0..parts, |i| {
+            let end = &ends[i as usize];
+            let (done, cost) = finished(common, (i, end), allowance(i, &rounds[end.round]), &reading);
+            (end.round, done, cost)
+        });
+        if let Some(exact) = finishes.iter().position(|(_, done, _)| done.iter().any(|end| end.exact)) {
+            finishes.truncate(exact + 1);
+        }
+        if all {
+            let costs = (0..).zip(&finishes).map(|(i, (.., cost))| (cost.objective, shared.of(i)));
+            self.whole &= costs.into_iter().all(|(cost, share)| spared(cost, share));
+        } else {
+            let allowed = Allowed { left, parts: 0, shared: false };
+            self.keep_those_that_fit(rounds, allowed, |i, round| {
+                let own = finishes.iter().filter(|(round, ..)| *round == i);
+                round.cost.objective + own.map(|(.., cost)| cost.objective).sum::<u64>()
+            });
+        }
         let mut done: Vec<Finished> = Vec::new();
-        for (i, (finished, cost)) in (0..).zip(finishes) {
+        for (_, ends, cost) in finishes.into_iter().filter(|(round, ..)| *round < rounds.len()) {
             self.cost += cost;
-            self.ample &= spared(cost.objective, share(left, parts, i));
-            let is_exact = finished.iter().any(|end| end.exact);
-            done.extend(finished);
-            if is_exact {
-                break;
-            }
+            done.extend(ends);
         }
         done
+    }
+
+    /// Keeps the first rounds that the evaluations allowed suffice for, or all if they are shared, and records whether
+    /// they limited any; `cost` returns the evaluations of a round.
+    fn keep_those_that_fit(
+        &mut self,
+        rounds: &mut Vec<Round>,
+        allowed: Allowed,
+        cost: impl Fn(usize, &Round) -> u64,
+    ) {
+        let fit = allowed.suffice_for(rounds.iter().enumerate().map(|(i, round)| cost(i, round)));
+        self.whole &= fit == rounds.len();
+        if !allowed.shared {
+            rounds.truncate(fit);
+        }
     }
 
     /// Returns the least merit on all points of the ends of a round, whether they were finished in it or after a batch.
@@ -133,5 +175,70 @@ impl Batch {
             round.leaders.iter().any(|(merit, _)| is_same(explored.0, *merit)).then_some(whole.0)
         });
         own.chain(shared).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Runs parts in parallel, the earlier ones first: those that end may tell later ones that they will not be read.
+fn in_order<T: Send>(parts: Range<u64>, run: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    let next = AtomicU64::new(parts.start);
+    let mut done: Vec<(u64, T)> = parts
+        .into_par_iter()
+        .map(|_| {
+            let part = next.fetch_add(1, Ordering::Relaxed);
+            (part, run(part))
+        })
+        .collect();
+    done.sort_by_key(|(part, _)| *part);
+    done.into_iter().map(|(_, result)| result).collect()
+}
+
+/// The evaluations that parts which run in parallel may use.
+#[derive(Clone, Copy)]
+struct Allowed {
+    left: u64,
+    parts: u64,
+    /// Whether they are shared evenly; else each part may use all of them.
+    shared: bool,
+}
+
+impl Allowed {
+    /// Returns the evaluations that a part may use.
+    fn of(&self, part: u64) -> u64 {
+        if self.shared { share(self.left, self.parts, part) } else { self.left }
+    }
+
+    /// Returns the number of parts from the first on whose evaluations fit into those left together, and that their
+    /// allowance did not limit.
+    fn suffice_for(&self, costs: impl Iterator<Item = u64>) -> usize {
+        let mut sum = 0_u64;
+        let fits = |&(part, cost): &(u64, u64)| {
+            sum += cost;
+            sum <= self.left && spared(cost, self.of(part))
+        };
+        (0..).zip(costs).take_while(fits).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_parts_that_the_evaluations_suffice_for_are_read() {
+        let fit = |left, shared, costs: &[u64]| {
+            let allowed = Allowed { left, parts: costs.len() as u64, shared };
+            allowed.suffice_for(costs.iter().copied())
+        };
+        assert_eq!(fit(1000, false, &[400, 300, 300, 1]), 3);
+        assert_eq!(fit(1000, false, &[400, 300, 301, 1]), 2, "one that is cut ends them");
+        assert_eq!(fit(1000, false, &[900, 1]), 0, "one that came near its allowance may have been cut");
+        assert_eq!(fit(10, false, &[1, 1]), 0, "too little for any");
+        assert_eq!(fit(2400, true, &[500, 1100]), 1, "the second came near its half");
+        assert_eq!(fit(1000, false, &[]), 0);
+    }
+
+    #[test]
+    fn parts_run_in_parallel_and_come_back_in_their_order() {
+        assert_eq!(in_order(3..40, |part| part * part), (3..40).map(|part| part * part).collect::<Vec<_>>());
     }
 }

@@ -118,6 +118,8 @@ struct Free<'a> {
     at: FreeState,
     /// The best of the judged ends that is acceptable, or would be after its polish.
     best: Option<Candidate>,
+    /// Whether the evaluations left did not suffice for the last batch.
+    is_cut: bool,
 }
 
 /// Searches until the best is believed, the limit is reached, or the patience is at an end.
@@ -168,6 +170,7 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
         setups: Vec::new(),
         at: FreeState::default(),
         best: None,
+        is_cut: false,
     };
     free.begin_next_stage();
     let points = |e: &Exploration<'_>| e.coarse.map_or(problem, |coarse| &coarse.problem).task().len();
@@ -352,15 +355,18 @@ impl Strategy for Free<'_> {
             best,
             nearest: self.at.ends.iter().find_map(|end| end.verdict.as_ref()),
             hits,
+            is_cut: self.is_cut && best.is_some(),
         }
     }
 
     fn run(&mut self, context: Context<'_>, left: u64) -> (Self::Batch, bool) {
         let now = self.next_stage();
         let first = self.at.counts.batch * BATCH;
+        let left = (left, self.best.is_none());
         let batch = Batch::run(context, &self.setups[now], &self.at.stages[now], first, left);
-        let ample = batch.ample;
-        ((batch, now), ample)
+        self.is_cut = !batch.whole;
+        let whole = batch.whole;
+        ((batch, now), whole)
     }
 
     fn read(&mut self, context: Context<'_>, (batch, stage): Self::Batch) {

@@ -20,6 +20,7 @@ use crate::synthesis::starts::Starts;
 use crate::synthesis::states::{End, StageState};
 use crate::task::Problem;
 use crate::task::forms::start::Start;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The data that all rounds share.
@@ -220,10 +221,46 @@ fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f6
     (drawn, count)
 }
 
+/// What parts that run in parallel and are read in their order know of each other: a part that will not be read may
+/// stop.
+#[derive(Debug)]
+pub(super) struct Reading {
+    /// The index of the first part with an exact answer; those after it are not read.
+    exact: AtomicU64,
+    /// The index of the first part, and the evaluations of the parts that have ended.
+    first: u64,
+    spent: Vec<AtomicU64>,
+    /// The evaluations allowed; parts before which more were spent are not read.
+    left: u64,
+}
+
+impl Reading {
+    pub(super) fn new(parts: Range<u64>, left: u64) -> Self {
+        let (first, spent) = (parts.start, parts.map(|_| AtomicU64::new(0)).collect());
+        Reading { exact: AtomicU64::new(u64::MAX), first, spent, left }
+    }
+
+    /// Returns whether a part will not be read.
+    fn is_unread(&self, part: u64) -> bool {
+        let before =
+            self.spent.iter().take((part - self.first) as usize).map(|spent| spent.load(Ordering::Relaxed));
+        self.exact.load(Ordering::Relaxed) < part || before.sum::<u64>() > self.left
+    }
+
+    /// Records that a part ended.
+    fn ended(&self, part: u64, evaluations: u64, exact: bool) {
+        if exact {
+            self.exact.fetch_min(part, Ordering::Relaxed);
+        }
+        if let Some(spent) = self.spent.get((part - self.first) as usize) {
+            spent.store(evaluations, Ordering::Relaxed);
+        }
+    }
+}
+
 /// Runs round `index` of a batch: its ends on the explored points, and on a sparse target the finished ends. `bar` is
-/// the least merit there before it; `found` is the index of the first round with an exact answer; those after it are
-/// not read and may stop.
-pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, found: &AtomicU64) -> Round {
+/// the least merit there before it.
+pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, reading: &Reading) -> Round {
     let &Common { context, setup, .. } = common;
     let mut round = Round {
         draws: 0,
@@ -233,8 +270,8 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, f
         independent: common.is_independent(index),
     };
     let mut spender = Spender::new(context, allowance);
-    let beaten = || found.load(Ordering::Relaxed) < index;
-    if beaten() {
+    let unread = || reading.is_unread(index);
+    if unread() {
         return round;
     }
     let (explored, dense) = (setup.explored(), setup.finishes_apart());
@@ -252,7 +289,7 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, f
     by_merit(&mut fitted, middles);
     let mut middle: Vec<(f64, Start)> = Vec::with_capacity(middles);
     for (merit, start) in fitted {
-        if beaten() {
+        if unread() {
             round.cost = spender.cost;
             return round;
         }
@@ -269,20 +306,20 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, f
     if !dense {
         let best = round.explored().min(bar);
         for (merit, start) in &round.leaders {
-            if beaten() {
+            if unread() {
                 break;
             }
             // A better one has been finished, in this round or before it.
             if setup.is_worth_finishing(*merit, best) {
                 round.finished.extend(finish(setup, (*merit, start), &mut spender));
                 if round.is_exact() {
-                    found.fetch_min(index, Ordering::Relaxed);
                     break;
                 }
             }
         }
     }
     round.cost = spender.cost;
+    reading.ended(index, round.cost.objective, round.is_exact());
     round
 }
 
@@ -323,23 +360,34 @@ fn judged_if_exact(setup: &Setup<'_>, explored: f64, (merit, start): (f64, Start
     Finished { explored, end, exact }
 }
 
+/// An end on the explored points that is still to be fitted to all points.
+pub(super) struct Unfinished<'a> {
+    /// The index of the first round that came to it.
+    pub(super) round: usize,
+    /// Its merit on the explored points.
+    pub(super) merit: f64,
+    pub(super) start: &'a Start,
+}
+
 /// Returns the ends of rounds on the explored points that can still matter and have not been finished in earlier batches
 /// of the stage, each once, best first.
 pub(super) fn unfinished<'a>(
     setup: &Setup<'_>,
     rounds: &'a [Round],
     stage: &StageState,
-) -> Vec<(f64, &'a Start)> {
+) -> Vec<Unfinished<'a>> {
     let best = rounds.iter().map(Round::explored).fold(stage.bar, f64::min);
-    let mut out: Vec<(f64, &Start)> = Vec::new();
-    for (merit, start) in rounds.iter().flat_map(|round| &round.leaders) {
+    let mut out: Vec<Unfinished<'_>> = Vec::new();
+    for (round, (merit, start)) in
+        rounds.iter().enumerate().flat_map(|(i, round)| round.leaders.iter().map(move |end| (i, end)))
+    {
         let met = stage.finished.iter().any(|(explored, _)| is_same(explored.0, *merit))
-            || out.iter().any(|(other, _)| is_same(*other, *merit));
+            || out.iter().any(|other| is_same(other.merit, *merit));
         if !met && setup.is_worth_finishing(*merit, best) {
-            out.push((*merit, start));
+            out.push(Unfinished { round, merit: *merit, start });
         }
     }
-    by_merit(&mut out, usize::MAX);
+    out.sort_by(|one, other| one.merit.total_cmp(&other.merit));
     out
 }
 
@@ -348,20 +396,18 @@ pub(super) fn is_same(one: f64, other: f64) -> bool {
     (one - other).abs() <= SAME_OPTIMUM * other
 }
 
-/// Finishes one of them within its allowance, unless one before it was exact.
+/// Finishes end `index` of them within its allowance, unless one before it was exact.
 pub(super) fn finished(
     &Common { context, setup, .. }: &Common<'_>,
-    (index, end): (u64, (f64, &Start)),
+    (index, end): (u64, &Unfinished<'_>),
     allowance: u64,
-    found: &AtomicU64,
+    reading: &Reading,
 ) -> (Vec<Finished>, Evaluations) {
     let mut spender = Spender::new(context, allowance);
-    if found.load(Ordering::Relaxed) < index {
+    if reading.is_unread(index) {
         return (Vec::new(), spender.cost);
     }
-    let done = finish(setup, end, &mut spender);
-    if done.iter().any(|done| done.exact) {
-        found.fetch_min(index, Ordering::Relaxed);
-    }
+    let done = finish(setup, (end.merit, end.start), &mut spender);
+    reading.ended(index, spender.cost.objective, done.iter().any(|done| done.exact));
     (done, spender.cost)
 }
