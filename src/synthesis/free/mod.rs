@@ -179,6 +179,7 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
     if let Some(state) = earlier.filter(|state| state.is_of(problem, &points)) {
         (1..state.stages.len()).for_each(|_| free.begin_next_stage());
         free.at = state.judged_again(problem);
+        free.best = free.judge_from_the_best(context);
     }
     let reason = drive(context, allowance, &mut free);
     let best = free.accepted().iter().map(|c| searched(problem, c)).min_by(f64::total_cmp);
