@@ -168,6 +168,11 @@ def check_dxf(path):
                     area += 0.5 * radius**2 * (angle - math.sin(angle))
             same(area, linkage.area(link, reach, 0), 1e-7)
             boxes.append(bbox.extents(list(contours)))
+        names = space.query("LWPOLYLINE[layer=='MARK']")
+        assert len(names) >= sum(map(len, linkage.holes().values())) and not any(e.closed for e in names)
+        assert {e.dxf.layer for e in space} == {"GROUND", "CRANK", "COUPLER", "FOLLOWER", "MARK"}
+        bare = read(export(path, "dxf-plates", hole_mm=hole, margin_mm=margin, kerf_mm=kerf, gap_mm=gap, marks="no"))
+        assert len(bare) == len(space) - len(names)
         for i, one in enumerate(boxes):
             for other in boxes[:i]:
                 apart = max(

@@ -22,7 +22,12 @@ pub(super) type Sizes = BTreeMap<String, String>;
 
 /// The files of an archive: what is added to the name, the ending, what it is for, and the format.
 const FILES: [(&str, &str, &str, Format); 6] = [
-    ("plates", "dxf", "the plates to cut, in millimetres", Format::DxfPlates),
+    (
+        "plates",
+        "dxf",
+        "the plates to cut, in millimetres; the layer MARK holds names to engrave",
+        Format::DxfPlates,
+    ),
     (
         "plates",
         "svg",

@@ -1,6 +1,7 @@
 //! The DXF drawings: the skeleton for a sketch in a CAD program, and the plates for a cutter.
 
 use super::dxf::Drawing;
+use super::marks::marks;
 use super::model::Model;
 use crate::files::generator::mark;
 use crate::mechanism::plates::{Placement, Plate};
@@ -42,10 +43,19 @@ fn layer(plate: &Plate) -> String {
     plate.link.name().to_uppercase()
 }
 
-/// Draws each plate on its own layer: one closed contour, holes as true circles, both offset by half the kerf.
+/// The colours of what is cut and of what is engraved, red and blue: lasers tell work apart by colours.
+const CUT: u8 = 1;
+const ENGRAVED: u8 = 5;
+/// The layer of what is engraved.
+const MARK: &str = "MARK";
+
+/// Draws each plate on its own layer: one closed contour, holes as true circles, both offset by half the kerf; names to
+/// engrave on a layer of their own, unless the settings leave them out.
 pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
-    let colours = [8, 1, 5, 3];
-    let layers: Vec<(String, u8)> = plates.iter().map(|(plate, _)| layer(plate)).zip(colours).collect();
+    let mut layers: Vec<(String, u8)> = plates.iter().map(|(plate, _)| (layer(plate), CUT)).collect();
+    if model.settings.marks() {
+        layers.push((MARK.to_owned(), ENGRAVED));
+    }
     let mut drawing = Drawing::new(&layers);
     for (plate, at) in plates {
         let layer = &layer(plate);
@@ -55,6 +65,11 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String
         drawing.polyline(layer, &contour, true);
         for (_, hole) in plate.distinct_holes() {
             drawing.circle(layer, at.of(hole), model.cut_hole());
+        }
+        if model.settings.marks() {
+            for stroke in marks(plate, at, (model.hole, model.margin)) {
+                drawing.polyline(MARK, &straight(&stroke), false);
+            }
         }
     }
     drawing.document(&[

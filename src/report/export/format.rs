@@ -72,15 +72,16 @@ impl Format {
     /// Returns the name, the kind of the files and the settings that apply.
     fn about(self) -> (&'static str, FileKind, &'static [&'static str]) {
         const DRAWING: &[&str] = &["scale", "unit", "hole_mm", "crank_deg", "samples"];
-        const PLATES: &[&str] = &["scale", "unit", "hole_mm", "margin_mm", "kerf_mm", "gap_mm", "sheet_mm"];
+        const MARKED: &[&str] =
+            &["scale", "unit", "hole_mm", "margin_mm", "kerf_mm", "gap_mm", "sheet_mm", "marks"];
         const BODIES: &[&str] =
             &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm", "gap_mm", "chord_mm", "crank_deg"];
         const LIST: &[&str] = &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm"];
         match self {
             Format::Svg => ("svg", FileKind::Svg, DRAWING),
-            Format::SvgPlates => ("svg-plates", FileKind::Svg, PLATES),
+            Format::SvgPlates => ("svg-plates", FileKind::Svg, &MARKED[..MARKED.len() - 1]),
             Format::Dxf => ("dxf", FileKind::Dxf, DRAWING),
-            Format::DxfPlates => ("dxf-plates", FileKind::Dxf, PLATES),
+            Format::DxfPlates => ("dxf-plates", FileKind::Dxf, MARKED),
             Format::Stl => ("stl", FileKind::Stl, &BODIES[..BODIES.len() - 1]),
             Format::Scad => ("scad", FileKind::Scad, BODIES),
             Format::Csv => ("csv", FileKind::Csv, &["scale", "positions", "omega_rad_s"]),

@@ -8,7 +8,7 @@
 //! | format | contents | module |
 //! |---|---|---|
 //! | `svg`, `svg-plates` | drawings, one unit of the view box a millimetre | `svg` |
-//! | `dxf`, `dxf-plates` | AutoCAD 2000 drawings, `$INSUNITS` millimetres | `dxf`, `drafting` |
+//! | `dxf`, `dxf-plates` | AutoCAD 2000 drawings, `$INSUNITS` millimetres | `dxf`, `drafting`, `marks` |
 //! | `stl` | the plates as closed bodies, laid out side by side | `mesh`, `stl` |
 //! | `scad` | an OpenSCAD script with every size as a parameter | `openscad` |
 //! | `cut-list`, `cut-list-csv` | hole distances and sizes of each plate | `cut_list` |
@@ -21,6 +21,7 @@ mod dxf;
 mod format;
 #[cfg(feature = "images")]
 mod images;
+mod marks;
 mod mesh;
 mod model;
 mod openscad;

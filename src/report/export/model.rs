@@ -125,6 +125,9 @@ impl<'a> Model<'a> {
             let sizes: Vec<&str> = sizes.into_iter().map(|(_, note)| note.as_str()).collect();
             notes.push(format!("by default {}", sizes.join(", ")));
         }
+        if format == Format::DxfPlates && self.settings.marks.is_none() {
+            notes.push("the layer MARK holds names to engrave; marks=no leaves it out".to_owned());
+        }
         notes
     }
 

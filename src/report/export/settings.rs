@@ -68,6 +68,8 @@ pub struct Settings {
     pub size_px: Option<usize>,
     /// The number of frames of a turn.
     pub frames: Option<usize>,
+    /// Whether names are drawn on plates, to be engraved; they are by default.
+    pub marks: Option<bool>,
     /// The settings as they were typed.
     pub typed: Vec<(String, String)>,
 }
@@ -113,6 +115,7 @@ impl Settings {
             "positions" => self.positions = Some(count(key, value, 1..=100_000)?),
             "size_px" => self.size_px = Some(count(key, value, 100..=4000)?),
             "frames" => self.frames = Some(count(key, value, 2..=360)?),
+            "marks" => self.marks = Some(yes_or_no(key, value)?),
             "unit" => {
                 let found = Unit::ALL.into_iter().find(|unit| unit.label() == value);
                 self.unit = Some(found.ok_or_else(|| {
@@ -127,6 +130,11 @@ impl Settings {
     /// Returns the scale, 1 if none is set.
     pub fn scale(&self) -> f64 {
         self.scale.unwrap_or(1.0)
+    }
+
+    /// Returns whether names are drawn on plates.
+    pub fn marks(&self) -> bool {
+        self.marks.unwrap_or(true)
     }
 
     /// Returns the number of points of the coupler curve: half a degree of the crank apart by default.
@@ -169,6 +177,14 @@ fn sheet(value: &str) -> Result<[f64; 2], Refusal> {
     };
     let side = |text: &str| number("sheet_mm", text.trim(), (POSITIVE.0, help));
     Ok([side(width)?, side(height)?])
+}
+
+fn yes_or_no(key: &str, value: &str) -> Result<bool, Refusal> {
+    match value {
+        "yes" | "true" => Ok(true),
+        "no" | "false" => Ok(false),
+        _ => Err(Refusal::new(format!("`{key}` is neither yes nor no: {value}"), "write yes or no")),
+    }
 }
 
 fn count(key: &str, value: &str, range: std::ops::RangeInclusive<usize>) -> Result<usize, Refusal> {
