@@ -6,11 +6,11 @@
 //! numbers: at such a crank angle the loop does not close. The answers have the shape of the input, with one more axis of
 //! 2 for points.
 
+use crate::memory;
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
 
 /// A contiguous array of 64-bit floats.
 pub struct Input<'py> {
@@ -72,10 +72,7 @@ impl<'py> Output<'py> {
     /// # Errors
     /// `MemoryError`.
     pub fn new(py: Python<'py>, shape: &[usize], last: Option<usize>) -> PyResult<Self> {
-        let numpy = py.import(intern!(py, "numpy"))?;
-        let shape: Vec<usize> = shape.iter().copied().chain(last).collect();
-        let shape = PyTuple::new(py, shape)?;
-        let array = numpy.call_method1(intern!(py, "empty"), (shape,))?.cast_into::<PyArrayDyn<f64>>()?;
+        let array = memory::array(py, shape.iter().copied().chain(last).collect())?;
         Ok(Output { array: array.try_readwrite()? })
     }
 

@@ -9,6 +9,7 @@
 //! | [`doors`] | everything that the command line does beside synth, front and proofs |
 //! | [`errors`] | exceptions, and the border that no panic crosses |
 //! | [`linkage`] | the class of four-bars |
+//! | [`memory`] | memory of large arrays, kept for the next ones |
 //! | [`pools`] | thread pools that are kept between calls, fork-safe |
 //! | [`problem`] | the class of problems |
 //! | [`proving`] | proofs: verify and certify |
@@ -24,6 +25,7 @@ mod chain;
 mod doors;
 mod errors;
 mod linkage;
+mod memory;
 mod pools;
 mod problem;
 mod proving;

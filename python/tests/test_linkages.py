@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -153,6 +154,24 @@ def test_answers_are_arrays_of_ones_own() -> None:
     assert not np.array_equal(one.P, other.P)
     assert one.P.flags["W"]
     assert one.P.flags["C"]
+
+
+def test_memory_that_is_used_again_is_memory_that_nobody_uses() -> None:
+    phi = np.linspace(0, 6, 200_000)
+    expected = [LINKAGE.positions(float(angle)).P for angle in phi[::50_000]]
+    view = LINKAGE.positions(phi).P[::50_000]
+    pickled = pickle.dumps(LINKAGE.positions(phi).C)
+    for _ in range(3):
+        other = LINKAGE.positions(phi + 1)
+        other.P[:] = other.C[:] = other.D[:] = 0
+        assert np.array_equal(view, expected)
+    again = LINKAGE.positions(phi)
+    assert np.array_equal(again.P[::50_000], expected)
+    assert not np.shares_memory(again.P, again.C)
+    assert not np.shares_memory(again.P, view)
+    assert np.array_equal(pickle.loads(pickled), again.C)
+    assert again.P.flags["W"]
+    assert np.isfinite(LINKAGE.velocities(phi).P).all()
 
 
 def test_a_linkage_tells_its_parameters_and_is_read_back(tmp_path: Path) -> None:
