@@ -131,7 +131,7 @@ pub fn certify<'py>(
                     certificates::read_leaves(folder).ok().map(Arc::new)
                 }),
             };
-            Ok::<_, String>(Run { record: record.into(), leaves, checkpoint, ..of })
+            Ok::<_, String>(Run { record: record.into(), leaves, checkpoint, folder: None, ..of })
         })?;
         let found = value.map_err(refused)?;
         match interrupt {

@@ -5,10 +5,11 @@ use crate::linkage::FourBar;
 use crate::problem::{Problem, overrides};
 use crate::waiting::{Ended, Talk, carrying, run};
 use crate::{pools, values};
+use linkwright::internals::app::certificates::{self, Unusable};
 use linkwright::internals::app::inputs::{self, Given, Which};
 use linkwright::internals::app::job::files::{self, Timing};
 use linkwright::internals::app::job::folder::{
-    CERTIFICATE_CHECKPOINT, LEAVES, ResultsFolder, parse_record, read_record,
+    CERTIFICATE_CHECKPOINT, LEAVES, ResultsFolder, TIMING, parse_record, read_record,
 };
 use linkwright::internals::app::job::run::{Context, Finished, Job, prove, run as search};
 use linkwright::internals::app::job::save::{self, Listener, Options, Ran};
@@ -26,7 +27,7 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -155,6 +156,13 @@ pub fn open(path: PathBuf) -> PyResult<Run> {
     })
 }
 
+/// Returns whether a result, a folder or its `record.json`, lies in a folder.
+fn is_same(result: &Path, folder: &Path) -> bool {
+    let of = |path: &Path| std::fs::canonicalize(path).ok();
+    let own = if result.is_dir() { of(result) } else { result.parent().and_then(of) };
+    own.is_some() && own == of(folder)
+}
+
 /// Reads the text of a record.json.
 #[pyfunction]
 pub fn parse_run(text: &[u8]) -> PyResult<Run> {
@@ -190,6 +198,32 @@ impl Run {
         let Given::Run(run) = self.given(Some(which))? else { return Err(bug(&"a linkage")) };
         let chosen = run.one().map_err(refused)?;
         Ok((chosen.candidate.clone(), files::linkage_name(&self.record, &chosen.suffix)))
+    }
+
+    /// Returns the files that belong to the run beside what its record gives: the leaves and the checkpoint of its proof and
+    /// its times, those that it holds, else those in the folder that it was read from.
+    ///
+    /// # Errors
+    /// [`Unusable`] for a file that cannot be read.
+    fn beside(&self) -> Result<Vec<(&'static str, Vec<u8>)>, Unusable> {
+        let from = self.folder.as_deref();
+        let leaves = match (&self.leaves, from.filter(|_| self.record.certificate.is_some())) {
+            (Some(leaves), _) => Some(leaves.to_vec()),
+            (None, Some(from)) => match certificates::read_leaves(from) {
+                Err(Unusable::NoLeaves(_)) => None,
+                read => Some(read?),
+            },
+            (None, None) => None,
+        };
+        let checkpoint = match (&self.checkpoint, from) {
+            (Some(checkpoint), _) => Some(checkpoint.to_vec()),
+            (None, Some(from)) => certificates::read_checkpoint(from)?,
+            (None, None) => None,
+        };
+        let timing = from.filter(|_| self.timing.is_none());
+        let timing = timing.and_then(|from| std::fs::read(certificates::beside(from, TIMING)).ok());
+        let all = [(LEAVES, leaves), (CERTIFICATE_CHECKPOINT, checkpoint), (TIMING, timing)];
+        Ok(all.into_iter().filter_map(|(name, bytes)| Some((name, bytes?))).collect())
     }
 
     fn timing(&self) -> Timing {
@@ -284,8 +318,14 @@ impl Run {
             let written = crate::waiting::run_whole(py, move |_| {
                 let mut place = ResultsFolder::take(&folder).map_err(|why| why.to_string())?;
                 let mut all = files::files(&taken.record, &taken.timing()).map_err(|why| why.to_string())?;
-                for (name, bytes) in [(LEAVES, &taken.leaves), (CERTIFICATE_CHECKPOINT, &taken.checkpoint)] {
-                    all.extend(bytes.as_ref().map(|bytes| (name.into(), bytes.to_vec())));
+                let beside = taken.beside().map_err(|why| why.to_string())?;
+                for (name, bytes) in beside {
+                    all.retain(|(other, _)| other != name);
+                    all.push((name.into(), bytes));
+                }
+                if taken.folder.as_ref().is_some_and(|from| is_same(from, &folder)) && place.has_checkpoint()
+                {
+                    place.keep_checkpoint();
                 }
                 place.replace(&all).map_err(|why| why.to_string())
             })?;

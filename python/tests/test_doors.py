@@ -132,6 +132,12 @@ def test_leaves_are_checked_as_by_the_command(root: Path, tmp_path: Path, progra
     assert lw.verify(proved).leaves is None
     place = tmp_path / "proved"
     proved.save(place)
+    files = {path.name: path.read_bytes() for path in place.iterdir()}
+    assert "certificate.leaves" in files
+    lw.open(place).save(place)
+    lw.open(place / "record.json").save(tmp_path / "again")
+    for other in (place, tmp_path / "again"):
+        assert {path.name: path.read_bytes() for path in other.iterdir()} == files
     assert lw.verify(place, leaves=True).leaves == lw.verify(place / "record.json", leaves=True).leaves == shown.leaves
     said = call([*program, "verify", str(place), "--leaves"])
     assert said.returncode == 0, said.stderr

@@ -46,7 +46,7 @@ pub enum Unusable {
 }
 
 /// Returns the path of a file beside the record of a result, which is a folder or its `record.json`.
-fn beside(result: &Path, name: &str) -> PathBuf {
+pub fn beside(result: &Path, name: &str) -> PathBuf {
     if result.is_dir() { result.join(name) } else { result.with_file_name(name) }
 }
 

@@ -7,7 +7,7 @@ use super::{Ended, interrupt, refuse, refuse_path, terminal};
 use crate::app::certificates;
 use crate::app::job::files;
 use crate::app::job::files::Timing;
-use crate::app::job::folder::{CERTIFICATE_CHECKPOINT, LEAVES, RECORD, ResultsFolder, replace_file};
+use crate::app::job::folder::{CERTIFICATE_CHECKPOINT, LEAVES, RECORD, ResultsFolder, TIMING, replace_file};
 use crate::app::job::save::SaveError;
 use crate::judge::certificate::{Proof, ResumeError};
 use crate::record::Record;
@@ -18,8 +18,6 @@ use std::time::{Duration, Instant};
 
 /// The time between two checkpoints, so that a process that is killed loses no more.
 const KEPT_EVERY: Duration = Duration::from_secs(60);
-/// The file with a run's times.
-const TIMING: &str = "timing.json";
 
 /// Runs the command.
 pub fn run(options: &Certify) -> Result<Ended, Ended> {

@@ -5,7 +5,7 @@
 //! candidate of rank N.
 
 use crate::app::inputs::MEMBER;
-use crate::app::job::folder::{FRONT_CSV, FRONT_HTML, RECORD};
+use crate::app::job::folder::{FRONT_CSV, FRONT_HTML, RECORD, TIMING};
 use crate::app::job::run::AdviceSeconds;
 use crate::files::linkage_file;
 use crate::files::name;
@@ -93,7 +93,7 @@ pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>,
 pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<(String, Vec<u8>)>, NotJson> {
     let mut files = vec![
         (RECORD.to_string(), record_json(record)?),
-        ("timing.json".to_string(), json(timing)?),
+        (TIMING.to_string(), json(timing)?),
         ("candidates.csv".to_string(), csv::candidates_csv(record).into_bytes()),
     ];
     for Listed { file, name, candidate } in listed(record) {

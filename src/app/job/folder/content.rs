@@ -1,5 +1,6 @@
 //! Recognition of a result's files by their contents: a user's file with the name of such a file is left alone.
 
+use super::TIMING;
 use crate::files::generator::FileKind;
 use std::io::Read;
 use std::path::Path;
@@ -17,7 +18,7 @@ const UNMARKED_DRAWING: &[u8] =
 /// machine may have lost its contents. Records and files of an unfinished search are checked when they are read.
 pub(super) fn is_of_a_run(path: &Path, name: &str) -> bool {
     let known: fn(&[u8]) -> bool = match name {
-        "timing.json" => is_timing,
+        TIMING => is_timing,
         "candidates.csv" => |head| head.starts_with(CANDIDATES),
         "report.html" => |head| FileKind::Html.is_written_by_us(head, b""),
         _ if name.starts_with("curve-") => |head| head.starts_with(CURVE),

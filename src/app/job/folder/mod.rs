@@ -27,6 +27,8 @@ pub const RECORD: &str = "record.json";
 const TEMPORARY: &str = ".linkwright-";
 /// The name of the file with the checkpoint of an unfinished search.
 pub const CHECKPOINT: &str = "checkpoint.json";
+/// The name of the file with the times of a run.
+pub const TIMING: &str = "timing.json";
 /// The name of the file with the leaves of a certificate.
 pub const LEAVES: &str = "certificate.leaves";
 /// The name of the file with the checkpoint of an unfinished certificate.
@@ -184,7 +186,7 @@ fn is_ours(name: &str) -> bool {
     };
     matches!(
         name,
-        LOCK | RECORD | "timing.json" | "candidates.csv" | "contact-sheet.svg" | "exact.svg" | "report.html"
+        LOCK | RECORD | TIMING | "candidates.csv" | "contact-sheet.svg" | "exact.svg" | "report.html"
     ) || [FRONT_CSV, FRONT_HTML, CHECKPOINT, LEAVES, CERTIFICATE_CHECKPOINT].contains(&name)
         || is_temporary(name)
         || numbered("curve-", ".csv")
