@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { build } from "esbuild";
+import { shortenPage, shortenScript } from "./shorten.mjs";
 
 /** A module of the page. */
 async function part(name) {
@@ -403,4 +404,23 @@ test("a problem under another name is the same one", () => {
   const task = { name: "a", points: [[0, 0]], closed: false, types: [], seed: 1 };
   assert.ok(isSameButForName(task, { seed: 1, types: [], closed: false, points: [[0, 0]], name: "b", source: "x" }));
   assert.ok(!isSameButForName(task, { ...task, name: "b", seed: 2 }));
+});
+
+test("a script that is made shorter does the same; a page keeps its words", () => {
+  const script =
+    '"use strict";(()=>{let a=[3,-4,"b"],o={"aria-label":"value",valueAsNumber:Math.max(1,2)+Math.max(3,Math.abs(-9)),' +
+    "value:[Math.max(...a.slice(0,2)),Math.max(5),Math.max(6)]};" +
+    'function f(x){switch(x){case"aria-label":return"value"in o?o["aria-label"]:"aria-label";default:return o?.valueAsNumber}}' +
+    'o.valueAsNumber+=1;globalThis.told=[f("aria-label"),f("value"),o.value,o.valueAsNumber,o?.valueAsNumber,' +
+    "[1.25,2].map(v=>v.toPrecision(2)),(7.5).toPrecision(2),a.includes(String(o.value.includes(3))),a.includes('b')]})();";
+  const told = (text) => {
+    new Function(text)();
+    return globalThis.told;
+  };
+  const short = shortenScript(script);
+  assert.ok(short.length < script.length && /=Math\.max[,;]/.test(short) && short.includes("aria-label"), short);
+  assert.deepEqual(told(short), told(script));
+  assert.throws(() => shortenScript("let a = 1;"), /not one function/);
+  const page = '<ul id="some-list">\n<li class="a b"> two <b>words</b> apart</li>\n</ul>\n';
+  assert.equal(shortenPage(page), '<ul id=some-list><li class="a b"> two <b>words</b> apart</li></ul>');
 });
