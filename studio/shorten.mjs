@@ -7,8 +7,8 @@ import ts from "typescript";
 
 /** Objects whose functions need no `this`. */
 const SPACES = new Set(["Math", "Number", "JSON", "Object"]);
-/** Shorter members stay: arithmetic in loops reads them, and a name is found faster than what a variable names. */
-const LEAST_MEMBER = 7;
+/** Shorter members stay, and `length`: loops read them, and a name is found faster than what a variable names. */
+const LEAST_MEMBER = 6;
 
 /** A space where a variable would run into the word that stands at a place. */
 const apart = (text, at) => (/[\w$]/.test(text[at]) ? " " : "");
@@ -28,7 +28,11 @@ function places(script) {
       const from = expression.end;
       if (ts.isIdentifier(expression) && SPACES.has(expression.text) && !questionDotToken)
         note(`${expression.text}.${name.text}`, expression.getStart(), node.end);
-      else if (name.text.length >= LEAST_MEMBER && expression.kind !== ts.SyntaxKind.SuperKeyword)
+      else if (
+        name.text.length >= LEAST_MEMBER &&
+        name.text !== "length" &&
+        expression.kind !== ts.SyntaxKind.SuperKeyword
+      )
         note(JSON.stringify(name.text), from, node.end, questionDotToken ? "?.[" : "[", "]");
     } else if (ts.isStringLiteral(node) && !ts.isExpressionStatement(node.parent)) {
       const from = node.getStart();
