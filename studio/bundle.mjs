@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Makes the page's script and its styles in the folder that is named, as short as they can be: app.js of src/main.ts,
-// style.css of the player's and the studio's styles.
+// Makes the page in the folder that is named, as short as it can be: app.js of src/main.ts, style.css of the player's and
+// the studio's styles, index.html of src/index.html.
 //
 // Members of classes get short names where every use of the name in the page is one of a class's member, as the types say:
 // what is sent, kept or read from outside keeps its name. So do the styles' own properties, which no script names.
@@ -10,6 +10,7 @@ import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build, transform } from "esbuild";
 import ts from "typescript";
+import { shortenPage, shortenScript } from "./shorten.mjs";
 
 const here = (path) => fileURLToPath(new URL(path, import.meta.url));
 
@@ -104,17 +105,22 @@ function names() {
 const common = { target: "es2022", charset: "utf8", minify: true, logLevel: "warning" };
 const folder = process.argv[2];
 
-await build({
+const built = await build({
   ...common,
   entryPoints: [here("src/main.ts")],
-  outfile: join(folder, "app.js"),
+  write: false,
   bundle: true,
   format: "iife",
   mangleProps: new RegExp(`^(${names().join("|")})$`),
 });
+writeFileSync(join(folder, "app.js"), shortenScript(built.outputFiles[0].text));
+writeFileSync(join(folder, "index.html"), shortenPage(readFileSync(here("src/index.html"), "utf8")));
 
 const styles = ["../src/report/html/player/player.css", "src/studio.css", "src/desk.css"];
 const css = styles.map((name) => readFileSync(here(name), "utf8")).join("");
 const properties = [...new Set(css.match(/--[a-z][\w-]*/g))];
-const short = css.replace(/--[a-z][\w-]*/g, (name) => `--${properties.indexOf(name).toString(36)}`);
+const short = css
+  .replace(/--[a-z][\w-]*/g, (name) => `--${properties.indexOf(name).toString(36)}`)
+  .replace(/(--\w+:) +/g, "$1")
+  .replace(/#([\da-f])\1([\da-f])\2([\da-f])\3(?![\da-f])/g, "#$1$2$3");
 writeFileSync(join(folder, "style.css"), (await transform(short, { ...common, loader: "css" })).code);

@@ -172,7 +172,7 @@ test("points files, drawings and problems are dropped, pasted, opened; what is w
   assert.equal(known(await problemText(page)), published);
   await tab(page, "points");
   await typed(page, cell(page, "Point 3, y"), "1.05");
-  await page.waitForFunction(() => /published .* let go/.test(document.querySelector("#desk-said").textContent));
+  await page.waitForFunction(() => /published .* they go/.test(document.querySelector("#desk-said").textContent));
   assert.equal(known(await problemText(page)), "");
   assert.doesNotMatch(await page.locator("#kept").textContent(), /published/);
   await page.getByRole("button", { name: "Undo" }).click();
@@ -221,7 +221,7 @@ test("boxes are drawn with the mouse and with keys", async () => {
   const right = Number(await page.locator("#right").inputValue());
   await page.locator("#board svg").focus();
   for (const key of ["b", "b"]) await page.keyboard.press(key);
-  assert.match(await status(page), /^Pivot box, lower right corner/);
+  assert.match(await status(page), /^Box for the pivots, lower right corner/);
   await page.keyboard.press("Shift+ArrowRight");
   assert.ok(Number(await page.locator("#right").inputValue()) > right);
   // The other box, by the control and by keys; Delete removes it.
@@ -232,7 +232,7 @@ test("boxes are drawn with the mouse and with keys", async () => {
   await shot(page, "boxes");
   await page.locator("#board svg").focus();
   for (let i = 0; i < 3; i += 1) await page.keyboard.press("b");
-  assert.match(await status(page), /^Space, lower left corner/);
+  assert.match(await status(page), /^Box for everything, lower left corner/);
   await page.keyboard.press("Delete");
   assert.ok(!(await page.locator("#space").isChecked()));
   await page.keyboard.press("Control+z");
@@ -414,7 +414,7 @@ test("what stands in the way is said, and a change that helps is one click", asy
   await typed(page, "#tolerance", "0.01");
   await typed(page, "#transmission", "89");
   await doing(page, "done");
-  assert.match(await status(page), /Nothing acceptable was found: .*the least transmission angle[\s\S]*see below/);
+  assert.match(await status(page), /Nothing acceptable was found: .*“least transmission angle”[\s\S]*see below/);
   assert.doesNotMatch(await page.locator("#strip").textContent(), /e−1\d/, "rounding is no figure");
   const help = page.locator("#helps button").first();
   assert.match(await help.textContent(), /instead of/);

@@ -1,8 +1,10 @@
 // What the page reckons without a browser: targets, texts of coordinates, steps back, choices. See .ci/check-studio.
 
 import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 import { build } from "esbuild";
+import { shortenPage, shortenScript } from "./shorten.mjs";
 
 /** A module of the page. */
 async function part(name) {
@@ -30,6 +32,7 @@ const {
   withLongest,
 } = await part("task");
 const view = await part("view");
+const labels = await part("labels");
 const words = await part("words");
 const { followed, placeOf } = await part("choice");
 const { Steps } = await part("memory");
@@ -269,7 +272,7 @@ test("words for a figure: how near, how it transmits, what limits it", () => {
   assert.equal(words.sizeInWords(linkage, 100), "longest link 3 × the path");
   assert.equal(
     words.limitedBy(shown(), { longest: 300, transmission: 30, ratio: 20 }),
-    "limited by: longest link, transmission angle",
+    "limited by: longest link, least transmission angle",
   );
   assert.equal(words.limitedBy(shown(), { longest: null, ratio: 20 }), "");
   const list = [
@@ -403,4 +406,51 @@ test("a problem under another name is the same one", () => {
   const task = { name: "a", points: [[0, 0]], closed: false, types: [], seed: 1 };
   assert.ok(isSameButForName(task, { seed: 1, types: [], closed: false, points: [[0, 0]], name: "b", source: "x" }));
   assert.ok(!isSameButForName(task, { ...task, name: "b", seed: 2 }));
+});
+
+test("a script that is made shorter does the same; a page keeps its words", () => {
+  const script =
+    '"use strict";(()=>{let a=[3,-4,"b"],o={"aria-label":"value",valueAsNumber:Math.max(1,2)+Math.max(3,Math.abs(-9)),' +
+    "value:[Math.max(...a.slice(0,2)),Math.max(5),Math.max(6)]};" +
+    'function f(x){switch(x){case"aria-label":return"value"in o?o["aria-label"]:"aria-label";default:return o?.valueAsNumber}}' +
+    'o.valueAsNumber+=1;globalThis.told=[f("aria-label"),f("value"),o.value,o.valueAsNumber,o?.valueAsNumber,' +
+    "[1.25,2].map(v=>v.toPrecision(2)),(7.5).toPrecision(2),a.includes(String(o.value.includes(3))),a.includes('b')]})();";
+  const told = (text) => {
+    new Function(text)();
+    return globalThis.told;
+  };
+  const short = shortenScript(script);
+  assert.ok(short.length < script.length && /=Math\.max[,;]/.test(short) && short.includes("aria-label"), short);
+  assert.deepEqual(told(short), told(script));
+  assert.throws(() => shortenScript("let a = 1;"), /not one function/);
+  const page = '<ul id="some-list">\n<li class="a b"> two <b>words</b> apart</li>\n</ul>\n';
+  assert.equal(shortenPage(page), '<ul id=some-list><li class="a b"> two <b>words</b> apart</li></ul>');
+});
+
+test("what is asked has one name: that of its control, in the page and in what the studio says", () => {
+  const read = (path) => readFileSync(new URL(path, import.meta.url), "utf8");
+  const page = read("src/index.html").toLowerCase();
+  const kinds = new URL("../src/task/requirement/", import.meta.url);
+  const said = readdirSync(kinds).flatMap((name) => {
+    const text = readFileSync(new URL(name, kinds), "utf8");
+    const [, key] = /key: "([\w.]+)"/.exec(text) ?? [];
+    const [, plain] = /plain: "([^"]+)"/.exec(text) ?? [];
+    return key ? [[key, plain]] : [];
+  });
+  assert.ok(said.length >= 13, String(said));
+  for (const [key, plain] of said) {
+    assert.equal(plain, labels.labelOf(key), key);
+    assert.ok(page.includes(`>${plain}`) || page.includes(`> ${plain}`), `${plain}: a label of the page`);
+  }
+  assert.equal(labels.labelOf("design.Ax"), "place of A");
+  assert.equal(labels.labelOf("design.ground"), "bounds of ground");
+  for (const [text, wanted] of [
+    ["fixed pivots inside", "both fixed pivots inside a box"],
+    ["pivots_in ymax = 20 is on its limit", "both fixed pivots inside a box, top = 20 is on its limit"],
+    ["costs 1 mm of rms; 1 mm more at xmin gives", "costs 1 mm of rms; 1 mm more at left gives"],
+    ["not: type, design.a, pivots_in", "not: driven by, bounds of a, both fixed pivots inside a box"],
+    ["`require.link_ratio_max` is 0.5", "longest over shortest link is 0.5"],
+    ["coupler_x and a path_of_mine stay", "coupler_x and a path_of_mine stay"],
+  ])
+    assert.equal(labels.labelled(text), wanted);
 });

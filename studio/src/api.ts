@@ -58,7 +58,7 @@ export async function whyClosed(): Promise<string> {
     if (reply.ok)
       return "The studio answers, but serves no more tabs at once: close another one, and this one goes on.";
     if (reply.status === 401 || reply.status === 403)
-      return "Another studio answers here, which does not know this tab: open the address that it printed; your drawing is kept here.";
+      return "Another studio answers here, which does not know this tab: open the address that it printed (Enter in its terminal prints another); your drawing is kept here.";
   } catch {
     // It has ended.
   }

@@ -2,7 +2,7 @@
 
 import { element, pathThrough, px, roundLength, setAll, shape } from "../../src/report/html/player/svg.mjs";
 import { Keys } from "./boardkeys";
-import { boxShapes, type Corner } from "./boxes";
+import { boxShapes, boxSpots, type Corner } from "./boxes";
 import { Figure, type Moving } from "./figures";
 import type { Joint, Pose } from "./grab";
 import { pointShapes } from "./marks";
@@ -262,6 +262,7 @@ export class Board implements Surface {
     this.drawGrips();
     this.mechanism.show(this.moving, this.toPixel);
     this.boxGroup.replaceChildren(...boxShapes(task, this.toPixel, this.corner));
+    this.hand.boxed(boxSpots(task, this.toPixel));
     this.overview.show(boxOf(task.points), this.moving, this.window, this.frame);
     const length = roundLength((0.2 * this.width) / this.view.scale);
     const y = this.height - 14;

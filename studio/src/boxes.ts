@@ -9,7 +9,7 @@ export type BoxKind = "pivots_in" | "footprint_in";
 export const LEAST = 12;
 export const KINDS: BoxKind[] = ["pivots_in", "footprint_in"];
 
-const SAYS: Record<BoxKind, string> = { pivots_in: "fixed pivots in here", footprint_in: "everything in here" };
+const SAYS: Record<BoxKind, string> = { pivots_in: "both fixed pivots in here", footprint_in: "everything in here" };
 /** Which numbers of a box each corner holds, in the order in which keys go through them. */
 const CORNERS: [number, number][] = [
   [0, 1],
@@ -54,7 +54,19 @@ export function nextCorner(task: Task, now: Corner | null): Corner | null {
   return all[at + 1] ?? null;
 }
 
-export const inWords = (at: Corner) => `${at.kind === "pivots_in" ? "Pivot box" : "Space"}, ${NAMES[at.corner]} corner`;
+export const inWords = (at: Corner) =>
+  `Box for ${at.kind === "pivots_in" ? "the pivots" : "everything"}, ${NAMES[at.corner]} corner`;
+
+/** Where both boxes have corners and words, in pixels. */
+export function boxSpots(task: Task, toPixel: (p: Point) => Point): Point[] {
+  return KINDS.flatMap((kind) => {
+    const box = task[kind];
+    if (!box) return [];
+    const [left, top] = toPixel(cornerOf(box, 3));
+    const words = [30, 70, 110, 150].map((along): Point => [left + along, top + 10]);
+    return [...NAMES.map((_, corner) => toPixel(cornerOf(box, corner))), ...words];
+  });
+}
 
 /** Both boxes as shapes, with handles at their corners. */
 export function boxShapes(task: Task, toPixel: (p: Point) => Point, chosen: Corner | null): SVGElement[] {

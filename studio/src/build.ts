@@ -37,6 +37,8 @@ export class BuildPanel {
   private legs = element("p", { class: "note", hidden: "" }, [
     "These are the plates of one leg: cut crank, coupler and follower once for each leg, the ground once.",
   ]);
+  /** What is in the file to cut. */
+  private cutting = element("p", { class: "note", id: "cutting" });
   private nothing = element("p", { class: "note" }, ["Draw a path first: its linkage is built here."]);
   /** That it was found for something else than what is drawn. */
   private elsewhere = element("p", { class: "note", id: "elsewhere" });
@@ -84,6 +86,7 @@ export class BuildPanel {
       this.plates,
       this.legs,
       element("div", { class: "row" }, [this.dxf, this.save, this.elsewhere]),
+      this.cutting,
       element("details", { open: "" }, [element("summary", {}, ["Layers and clearances"]), this.layers]),
     );
     const sizes = ["hole_mm", "margin_mm", "kerf_mm", "sheet_mm"];
@@ -133,13 +136,23 @@ export class BuildPanel {
     const chosen = this.host.chosen();
     this.legs.hidden = !chosen || !this.isWalker();
     this.title.textContent = `Plates of ${this.host.name()}`;
-    for (const part of [this.title, this.plates, this.dxf, this.save, this.layers.parentElement as HTMLElement])
+    for (const part of [
+      this.title,
+      this.plates,
+      this.dxf,
+      this.save,
+      this.cutting,
+      this.layers.parentElement as HTMLElement,
+    ])
       part.hidden = !chosen;
     this.nothing.hidden = chosen !== null;
     const elsewhere = chosen ? pinnedFor(chosen.task, this.host.task()) : "";
     this.elsewhere.textContent = elsewhere && `This linkage is ${elsewhere}: its plates are not of this drawing.`;
     if (!chosen) return;
     const [of, set] = [api.drawn(chosen), this.set()];
+    const kerf =
+      Number(set.kerf_mm) > 0 ? `The kerf of ${set.kerf_mm} mm is in the DXF already: cut along its lines. ` : "";
+    this.cutting.textContent = `${kerf}Red is to cut. The blue layer MARK is to engrave: names of links and holes.`;
     const key = JSON.stringify([of, set]);
     if (key === this.shownOf) return;
     this.shownOf = key;

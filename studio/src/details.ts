@@ -7,6 +7,7 @@ import { element, figure, shape } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
 import { changing } from "./focus";
+import { labelled } from "./labels";
 import type { Task } from "./messages";
 
 const FORMATS: [string, string, string][] = [
@@ -301,5 +302,8 @@ const keyOf = (of: api.Source) => JSON.stringify("job" in of ? of.job : of);
 function marked(markup: string, chosen: string): Element[] {
   const page = new DOMParser().parseFromString(markup, "text/html");
   for (const named of page.querySelectorAll("[id]")) named.removeAttribute("id");
+  const texts = page.createTreeWalker(page.body, NodeFilter.SHOW_TEXT);
+  for (let text = texts.nextNode(); text; text = texts.nextNode())
+    if (!text.parentElement?.closest("pre")) text.nodeValue = labelled(text.nodeValue ?? "");
   return [...page.querySelectorAll(chosen)].map((one) => document.adoptNode(one));
 }

@@ -2,24 +2,13 @@
 
 import { element, figure, minus } from "../../src/report/html/player/svg.mjs";
 import { changing } from "./focus";
+import { labelOf } from "./labels";
 import type { Relaxation, Task, Value } from "./messages";
 import { EXACT, type Instead, withoutControls } from "./task";
 
-export const NAMES: Record<string, [string, string]> = {
-  "require.type": ["driven by", ""],
-  "require.transmission_deg_min": ["least transmission angle", "°"],
-  "require.link_ratio_max": ["longest over shortest link", ""],
-  "require.extent_max": ["extent of the linkage", "unit"],
-  "require.longest_max": ["longest link", "unit"],
-  "require.pivots_in": ["pivot box", "unit"],
-  "require.footprint_in": ["space for the linkage", "unit"],
-  "require.order": ["order of the points", ""],
-  "require.direction": ["direction of the crank", ""],
-  "require.circuit": ["circuits", ""],
-  "require.branch": ["toggles", ""],
-  "require.closing": ["return to the first point", ""],
-  "task.path.tolerance": ["largest error", "unit"],
-};
+/** What is counted in degrees, and what in nothing; the rest are lengths. */
+const UNITS: Record<string, string> = { transmission_deg_min: "°" };
+for (const key of ["type", "link_ratio_max", "order", "direction", "circuit", "branch", "closing"]) UNITS[key] = "";
 
 /** The requirements that the page has no control for: only what is kept of a file can state them. */
 const UNSHOWN = ["require.extent_max", "require.longest_max"];
@@ -41,9 +30,8 @@ const words = (value: Value): string => {
 
 /** A change in plain words: `least transmission angle 18° instead of 45°`. */
 function inWords(key: string, from: Value, to: Value, unit: string | undefined): string {
-  const [name, of] = NAMES[key] ?? [key.startsWith("design.") ? `bounds of ${key.slice(7)}` : key, "unit"];
-  const after = of === "unit" ? (unit ? ` ${unit}` : "") : of;
-  return `${name} ${words(to)}${after} instead of ${words(from)}${after}`;
+  const after = UNITS[key.replace("require.", "")] ?? (unit ? ` ${unit}` : "");
+  return `${labelOf(key)} ${words(to)}${after} instead of ${words(from)}${after}`;
 }
 
 /** The task with a change made. */

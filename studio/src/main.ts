@@ -16,6 +16,7 @@ import type { Linkage } from "./grab";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
 import { byId, input } from "./ids";
+import { labelled } from "./labels";
 import { type Place, remember, remembered } from "./memory";
 import type { Answer, AnyAsk, Point, Shown, Task } from "./messages";
 import { nameFault } from "./names";
@@ -26,7 +27,7 @@ import { Said } from "./said";
 import { Scene } from "./scene";
 import { MOST_PINNED, Showing } from "./showing";
 import { SizeChip } from "./size";
-import { Stays } from "./stays";
+import { namesOfAsked, Stays } from "./stays";
 import { type How, Store } from "./store";
 import { inWords, isExact, Strip } from "./strip";
 import { SureChip } from "./sure";
@@ -91,7 +92,7 @@ class Page {
   private said = new Said(byId("status"), byId<HTMLProgressElement>("progress"), this.voice);
   private exchange = new Exchange(this.store, {
     answered: (answer) => this.answered(answer),
-    refused: (said) => this.say(`This cannot be searched: ${said}`),
+    refused: (said) => this.say(`This cannot be searched: ${labelled(said)}`),
     closed: (why) => this.say(why),
   });
   private guide = new Guide();
@@ -238,6 +239,7 @@ class Page {
       joint: (pose, joint, to) => this.byHand.drag(pose, joint, to),
       turn: (crankDeg) => this.scene.turn(crankDeg),
       marked: () => this.photograph.marked(),
+      boxed: (spots) => this.size?.clearOf(spots),
       looked: () => {
         // A view that the user has changed is remembered, once it rests.
         clearTimeout(this.looking);
@@ -265,11 +267,13 @@ class Page {
 
   /** Clears everything: the path and what was asked of it. Undo brings it back. */
   private clear() {
+    const asked = namesOfAsked(this.task);
     const nothing = tasks.pathAlone({ ...this.task, name: "drawing", source: undefined, points: [], closed: false });
     this.replace(nothing, { fresh: true });
     this.walk(false);
     this.gallery.open(false);
     this.board.open(this.task.unit);
+    if (asked.length > 0) this.say(`Cleared, with what was asked: ${asked.join(", ")}. Undo brings it back.`);
   }
 
   async begin() {
@@ -433,6 +437,7 @@ class Page {
       this.sure.show(null, "");
       if (this.byHand.shown) this.byHand.take(null);
       if (how.from) this.showing.expectOwn(version);
+      this.build.later();
     }
     this.stays.show(null);
     const held = how.moving ? this.showing.hold() : undefined;

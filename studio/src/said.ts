@@ -13,7 +13,10 @@ export class Said {
     private status: HTMLElement,
     private bar: HTMLProgressElement,
     private voice: Voice,
-  ) {}
+  ) {
+    // What is longer than two lines is seen whole after a tap, until the next.
+    status.addEventListener("click", () => status.classList.toggle("whole"));
+  }
 
   /** Says what was done: seen until the next answer, and heard. */
   say(text: string) {

@@ -2,8 +2,11 @@
 // picture as it is.
 
 import { element, figure } from "../../src/report/html/player/svg.mjs";
-import type { Task } from "./messages";
+import type { Point, Task } from "./messages";
 import { boxOf } from "./task";
+
+/** Pixels from the upper rim of the board, and around what it keeps clear of. */
+const [TOP, ROOM] = [9, 14];
 
 export class SizeChip {
   private field = element("input", {
@@ -25,6 +28,16 @@ export class SizeChip {
       if (by > 1e-6 && by < 1e6) change(by);
       else this.field.value = figure(this.length, 4);
     });
+  }
+
+  /** Stands at the rim of the board where none of these pixels lies beneath; at the top if there is no such place. */
+  clearOf(spots: Point[]) {
+    const { offsetLeft: left, offsetWidth: wide, offsetHeight: high } = this.node;
+    const isClear = (top: number) =>
+      spots.every(([x, y]) => x < left - ROOM || x > left + wide + ROOM || y < top - ROOM || y > top + high + ROOM);
+    const steps = spots.length > 0 && wide > 0 ? [0, 1, 2, 3, 4, 5] : [];
+    const step = steps.find((i) => isClear(TOP + i * (high + ROOM))) ?? 0;
+    this.node.style.top = step > 0 ? `${TOP + step * (high + ROOM)}px` : "";
   }
 
   show(task: Task) {

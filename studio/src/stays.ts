@@ -2,23 +2,23 @@
 
 import { element } from "../../src/report/html/player/svg.mjs";
 import { changing } from "./focus";
-import { NAMES } from "./helps";
+import { labelOf } from "./labels";
 import type { Task } from "./messages";
 
 const KEYS: [string, (task: Task) => unknown][] = [
-  ["task.path.tolerance", (task) => task.tolerance],
-  ["require.type", (task) => task.types.length > 0],
-  ["require.transmission_deg_min", (task) => task.transmission_deg_min],
-  ["require.link_ratio_max", (task) => task.link_ratio_max],
-  ["require.longest_max", (task) => task.kept?.["require.longest_max"]],
-  ["require.extent_max", (task) => task.kept?.["require.extent_max"]],
-  ["require.pivots_in", (task) => task.pivots_in],
-  ["require.footprint_in", (task) => task.footprint_in],
-  ["require.direction", (task) => task.direction && task.direction !== "any"],
+  ["tolerance", (task) => task.tolerance],
+  ["type", (task) => task.types.length > 0],
+  ["transmission_deg_min", (task) => task.transmission_deg_min],
+  ["link_ratio_max", (task) => task.link_ratio_max],
+  ["longest_max", (task) => task.kept?.["require.longest_max"]],
+  ["extent_max", (task) => task.kept?.["require.extent_max"]],
+  ["pivots_in", (task) => task.pivots_in],
+  ["footprint_in", (task) => task.footprint_in],
+  ["direction", (task) => task.direction && task.direction !== "any"],
 ];
 
-/** What is asked beside the path, by its keys. */
-const asked = (task: Task) => KEYS.filter(([, of]) => of(task)).map(([key]) => NAMES[key][0]);
+/** What is asked beside the path, as its controls are called. */
+export const namesOfAsked = (task: Task) => KEYS.filter(([, of]) => of(task)).map(([key]) => labelOf(key));
 
 export class Stays {
   private words = element("span");
@@ -34,7 +34,7 @@ export class Stays {
 
   /** Tells what a new drawing keeps; null: there is no new drawing any more. */
   show(task: Task | null) {
-    const names = task ? asked(task) : [];
+    const names = task ? namesOfAsked(task) : [];
     changing(
       this.place,
       () => {

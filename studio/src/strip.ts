@@ -4,6 +4,7 @@ import { element, figure, setAll } from "../../src/report/html/player/svg.mjs";
 import { isTheSame } from "./choice";
 import type { Moving } from "./figures";
 import { changing, setChildren } from "./focus";
+import { labelOf } from "./labels";
 import type { Shown, Solution, Task } from "./messages";
 import { Picture } from "./picture";
 import { longestMax, pinnedFor, sizeOf } from "./task";
@@ -23,30 +24,12 @@ const [W, H] = [150, 96];
 /** Of more than so many only the pictures in sight are drawn. */
 const MANY = 12;
 
-const WORDS: Record<string, string> = {
-  type: "type",
-  transmission_deg_min: "transmission angle",
-  link_ratio_max: "link ratio",
-  extent_max: "extent",
-  longest_max: "longest link",
-  pivots_in: "pivots",
-  footprint_in: "space",
-  direction: "direction of the crank",
-  tolerance: "tolerance",
-  order: "order of the points",
-  branch: "toggle between the points",
-  circuit: "two circuits",
-};
-
-const word = (key: string) =>
-  WORDS[key] ?? key.replace(/^design\.(A|B)(x|y)$/, "place of $1").replace(/^design\./, "bounds of ");
-
 export const inWords = (shown: Shown) =>
   shown.accepted
     ? jams(shown)
       ? "meets what was asked, but jams"
       : "meets everything that was asked"
-    : `not met: ${[...new Set(shown.unmet.map(word))].join(", ") || "a defect"}`;
+    : `not met: ${[...new Set(shown.unmet.map(labelOf))].join(", ") || "a defect"}`;
 
 /** Whether what it misses by is rounding: an error of 1e-14 tells nobody anything. */
 export function isExact({ ability, max, linkage: { a, b, c, d, e } }: Shown): boolean {

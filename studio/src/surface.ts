@@ -31,6 +31,8 @@ export interface Hand {
   marked(): void;
   /** The view has changed. */
   looked(): void;
+  /** Corners of boxes and their words lie at these pixels of the board. */
+  boxed(spots: Point[]): void;
   /** The closer linkage that is offered is wanted. */
   takeCloser(): void;
 }

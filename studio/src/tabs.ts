@@ -22,6 +22,12 @@ export class Tabs {
       button.addEventListener("click", () => this.open(TABS[i]));
       button.addEventListener("keydown", (event) => this.key(event));
     });
+    const taller = rail.querySelector("#taller") as HTMLElement;
+    taller.addEventListener("click", () => {
+      const isTall = rail.classList.toggle("tall");
+      taller.setAttribute("aria-expanded", String(isTall));
+      taller.textContent = isTall ? "▼" : "▲";
+    });
     this.wide.addEventListener("change", () => this.open(this.now));
     this.open(this.now);
   }

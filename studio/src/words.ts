@@ -1,6 +1,7 @@
 // The quality of a linkage in words: how near its curve comes, how well it transmits, how large it is.
 
 import { figure } from "../../src/report/html/player/svg.mjs";
+import { labelOf } from "./labels";
 import type { Box, Point, Shown } from "./messages";
 
 /** How good a figure is; a sign goes with each, for those who see no colour. */
@@ -83,18 +84,18 @@ export function limitedBy(
 ): string {
   const said: string[] = [];
   const near = (value: number, limit: number) => Math.abs(value - limit) <= 2e-3 * limit;
-  if (limits.longest !== null && near(longestOf(shown.linkage), limits.longest)) said.push("longest link");
-  if (limits.transmission && near(shown.transmission_deg, limits.transmission)) said.push("transmission angle");
-  if (limits.ratio && near(shown.link_ratio, limits.ratio)) said.push("link ratio");
+  if (limits.longest !== null && near(longestOf(shown.linkage), limits.longest)) said.push("longest_max");
+  if (limits.transmission && near(shown.transmission_deg, limits.transmission)) said.push("transmission_deg_min");
+  if (limits.ratio && near(shown.link_ratio, limits.ratio)) said.push("link_ratio_max");
   const { pivots } = limits;
   if (pivots) {
     const slack = 1e-3 * Math.hypot(pivots[2] - pivots[0], pivots[3] - pivots[1]);
     const { A, B } = shown.linkage;
     const isAtRim = ([x, y]: Point) =>
       [x - pivots[0], y - pivots[1], pivots[2] - x, pivots[3] - y].some((d) => d < slack);
-    if (isAtRim(A) || isAtRim(B)) said.push("pivot box");
+    if (isAtRim(A) || isAtRim(B)) said.push("pivots_in");
   }
-  return said.length > 0 ? `limited by: ${said.join(", ")}` : "";
+  return said.length > 0 ? `limited by: ${said.map(labelOf).join(", ")}` : "";
 }
 
 /** The marks of candidates in a list, the closest first: the first, the smallest and the one that transmits best. */

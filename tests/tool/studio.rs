@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// A studio that runs as a program of its own.
@@ -13,20 +13,33 @@ pub(crate) struct Studio {
     token: String,
 }
 
+/// Port and token of the next address that is printed.
+fn address(told: &mut impl BufRead) -> (u16, String) {
+    let mut line = String::new();
+    told.read_line(&mut line).expect("an address");
+    let rest = line.trim().strip_prefix("http://127.0.0.1:").expect("an address of this machine");
+    let (port, token) = rest.split_once("/?token=").expect("a token");
+    (port.parse().expect("a port"), token.to_owned())
+}
+
 impl Studio {
     pub(crate) fn start(arguments: &[&str]) -> Studio {
+        Studio::at_a_keyboard(arguments, Stdio::null()).0
+    }
+
+    /// A studio that hears this keyboard, and what it prints after its address.
+    fn at_a_keyboard(arguments: &[&str], keyboard: Stdio) -> (Studio, BufReader<ChildStdout>) {
         let mut child = Command::new(env!("CARGO_BIN_EXE_linkwright"))
             .args(["studio", "--no-open"])
             .args(arguments)
+            .stdin(keyboard)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
             .expect("it starts");
-        let mut line = String::new();
-        BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut line).expect("an address");
-        let rest = line.trim().strip_prefix("http://127.0.0.1:").expect("an address of this machine");
-        let (port, token) = rest.split_once("/?token=").expect("a token");
-        Studio { child, port: port.parse().expect("a port"), token: token.to_owned() }
+        let mut told = BufReader::new(child.stdout.take().expect("a pipe"));
+        let (port, token) = address(&mut told);
+        (Studio { child, port, token }, told)
     }
 
     pub(crate) fn socket(&self) -> TcpStream {
@@ -216,6 +229,35 @@ pub(crate) fn egg(version: u64, n: usize, by: f64) -> Value {
         })
         .collect();
     json!({"version": version, "points": points, "closed": true})
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn enter_prints_another_address_for_one_browser_and_ends_the_one_before() {
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    use std::fs::{File, OpenOptions};
+    let keys = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a terminal");
+    grantpt(&keys).and_then(|()| unlockpt(&keys)).expect("it is ours");
+    let name = ptsname(&keys, Vec::new()).expect("it has a name").into_string().expect("text");
+    let terminal = OpenOptions::new().read(true).write(true).open(name).expect("its other end");
+    let (mut studio, mut told) = Studio::at_a_keyboard(&["--port", "0"], terminal.into());
+    let mut keys = File::from(keys);
+    let mut used: Vec<String> = Vec::new();
+    for _ in 0..2 {
+        keys.write_all(b"\n").expect("a key");
+        let (port, another) = address(&mut told);
+        assert!(port == studio.port && another.len() == 64 && another != studio.token);
+        used.push(std::mem::replace(&mut studio.token, another));
+        for gone in &used {
+            let reply = studio.asks("GET", &format!("/?token={gone}"), &[], b"");
+            assert_eq!((reply.status(), reply.header("set-cookie")), (403, None));
+            assert!(reply.0.contains("Press Enter in the terminal where linkwright runs"), "{}", reply.0);
+        }
+        // Whoever was let in stays in.
+        let cookie = studio.cookie();
+        assert_eq!(studio.asks("GET", "/", &[("Cookie", &cookie)], b"").status(), 200);
+        assert_eq!(studio.asks("GET", &format!("/?token={}", studio.token), &[], b"").status(), 403);
+    }
 }
 
 #[test]

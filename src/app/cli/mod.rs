@@ -41,6 +41,8 @@ mod export;
 mod front;
 mod inputs;
 mod interrupt;
+#[cfg(feature = "studio")]
+mod keyboard;
 mod man;
 mod new;
 mod output;

@@ -2,7 +2,7 @@
 
 use super::arguments::Studio;
 use super::inputs::RESULTS;
-use super::{Ended, interrupt, refuse, refuse_at, refuse_path, terminal};
+use super::{Ended, interrupt, keyboard, refuse, refuse_at, refuse_path, terminal};
 use crate::app::studio;
 use crate::app::studio::StudioError;
 use crate::app::studio::messages::Ask;
@@ -33,6 +33,14 @@ pub fn run(options: &Studio) -> Result<Ended, Ended> {
     let address = studio.address();
     terminal::answer(&format!("{address}\n"));
     terminal::tell("The studio answers there until Ctrl-C ends it.");
+    let doorkeeper = studio.doorkeeper();
+    let another = move || match doorkeeper.another_address() {
+        Ok(address) => terminal::answer(&format!("{address}\n")),
+        Err(why) => terminal::complain(&why.to_string()),
+    };
+    if keyboard::on_enter(another) {
+        terminal::tell("Enter prints the address for another browser.");
+    }
     if !options.no_open {
         open(&address);
     }

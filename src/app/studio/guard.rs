@@ -24,7 +24,7 @@ pub(super) const MOST_BYTES: usize = 256 * 1024;
 /// The secrets and the limits that admit requests.
 pub(super) struct Guard {
     pub(super) port: u16,
-    /// The token of the address that is printed; taken by the first who brings it.
+    /// The token of the address that was printed last; taken by the first who brings it.
     token: Mutex<Option<String>>,
     /// The value of the cookie.
     secret: String,
@@ -81,6 +81,13 @@ impl Guard {
     /// Returns the token if it has not been used yet.
     pub(super) fn token(&self) -> Option<String> {
         self.token.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Puts a token that nobody knows in the place of the one before, used or not, and returns it.
+    pub(super) fn renewed_token(&self) -> Result<String, getrandom::Error> {
+        let token = random()?;
+        *self.token.lock().unwrap_or_else(PoisonError::into_inner) = Some(token.clone());
+        Ok(token)
     }
 
     /// Takes the token: true once.

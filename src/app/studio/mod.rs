@@ -39,4 +39,4 @@ mod tab;
 mod workshop;
 
 pub use asked::{AskError, MOST_POINTS, NotHere};
-pub use server::{Studio, StudioError};
+pub use server::{Doorkeeper, Studio, StudioError};

@@ -55,6 +55,24 @@ pub enum StudioError {
     System(#[from] io::Error),
 }
 
+/// Makes addresses that let one more browser in each, for whoever has started the studio.
+pub struct Doorkeeper(Arc<Guard>);
+
+impl Doorkeeper {
+    /// Returns an address with a token of its own, which lets one browser in; the addresses before it let none in any more.
+    ///
+    /// # Errors
+    /// [`StudioError::Random`].
+    pub fn another_address(&self) -> Result<String, StudioError> {
+        let token = self.0.renewed_token().map_err(StudioError::Random)?;
+        Ok(address(self.0.port, &token))
+    }
+}
+
+fn address(port: u16, token: &str) -> String {
+    format!("http://127.0.0.1:{port}/?token={token}")
+}
+
 /// A studio that listens, and answers while it [serves](Studio::serve).
 pub struct Studio {
     runtime: Runtime,
@@ -91,7 +109,12 @@ impl Studio {
     /// Returns the address to open, with the token that lets one browser in.
     pub fn address(&self) -> String {
         let guard = &self.house.guard;
-        format!("http://127.0.0.1:{}/?token={}", guard.port, guard.token().unwrap_or_default())
+        address(guard.port, &guard.token().unwrap_or_default())
+    }
+
+    /// Returns what lets in other browsers while the studio serves.
+    pub fn doorkeeper(&self) -> Doorkeeper {
+        Doorkeeper(Arc::clone(&self.house.guard))
     }
 
     /// Answers until `end` is set; then closes the tabs, stops their searches and returns.
@@ -146,8 +169,9 @@ async fn known(State(house): State<Arc<House>>, request: Request, next: Next) ->
 }
 
 fn stranger() -> Response {
-    let why = "Open the address that linkwright printed: it holds a token that lets one browser in, once.\n\
-               For another one end the studio and start it again.\n";
+    let why = "This browser is not let in. Open the address that linkwright has printed: it holds a token that lets one \
+               browser in, once.\nIt is used up? Press Enter in the terminal where linkwright runs: it prints another \
+               address, for this browser.\nWhere it has no terminal, end it and start it again.\n";
     (StatusCode::FORBIDDEN, why).into_response()
 }
 

@@ -74,10 +74,10 @@ fn sure(record: &Record, hits: Option<HitsSoFar>) -> (Sure, String) {
     }
 }
 
-/// Returns a requirement in plain words.
+/// Returns a requirement as the page calls it: by the label of its control.
 pub(super) fn plain(key: &str) -> String {
     let bounds = || key.strip_prefix("design.").map_or(key.to_owned(), |key| format!("the bounds of {key}"));
-    RequirementKind::with_key(key).map_or_else(bounds, |kind| kind.definition().plain.to_owned())
+    RequirementKind::with_key(key).map_or_else(bounds, |kind| format!("“{}”", kind.definition().plain))
 }
 
 /// Names the requirements that are not met together, and says whether a change helps.

@@ -7,7 +7,7 @@ pub(super) const BRANCH: Definition = Definition {
     key: "require.branch",
     short: "branch",
     label: "branch",
-    plain: "passing no toggle",
+    plain: "passes no toggle on the way",
     is_asked: |problem| problem.spec().require.branch == OnePolicy::One,
     set_limits: |spec, _| spec.require.branch = OnePolicy::Any,
     choice: |require| Some(Choice::Word(require.branch.name())),

@@ -8,7 +8,7 @@ pub(super) const CLOSING: Definition = Definition {
     key: "require.closing",
     short: "closing",
     label: "return to the first point",
-    plain: "returning to the first point without reversing",
+    plain: "comes back to the start of a closed path without reversing",
     is_asked: Problem::has_to_turn_on,
     set_limits: |spec, _| spec.require.closing = ClosingPolicy::Any,
     choice: |require| Some(Choice::Word(if require.closing.is_one_way() { "one-way" } else { "any" })),

@@ -8,7 +8,7 @@ pub(super) const DIRECTION: Definition = Definition {
     key: "require.direction",
     short: "direction",
     label: "direction",
-    plain: "the direction of the crank",
+    plain: "the crank turns",
     template: "# direction = \"ccw\"             # or \"cw\": which way the crank turns\n",
     is_asked: |problem| problem.spec().require.direction != DirectionPolicy::Any,
     check,

@@ -7,7 +7,7 @@ pub(super) const EXTENT_MAX: Definition = Definition {
     short: "extent",
     label: "diagonal of the motion's box",
     relation: "at most ",
-    plain: "the extent of the whole linkage",
+    plain: "whole linkage in motion",
     template: "# extent_max = 400              # the diagonal of the space that all of it needs as it moves, wherever that is\n",
     is_left_out_in_turn: true,
     is_asked: |problem| problem.spec().require.extent_max.is_some(),

@@ -7,7 +7,7 @@ pub(super) const FOOTPRINT_IN: Definition = Definition {
     short: "footprint",
     label: "motion inside",
     relation: "in ",
-    plain: "the space for the whole linkage",
+    plain: "everything inside a box",
     template: "# footprint_in = [-150, -150, 300, 300]   # where there is room for all of it as it moves\n",
     is_left_out_in_turn: true,
     is_asked: |problem| problem.spec().require.footprint_in.is_some(),

@@ -13,7 +13,7 @@ pub(super) const LINK_RATIO: Definition = Definition {
     short: "link ratio",
     label: "longest to shortest link",
     relation: "at most ",
-    plain: "the longest over shortest link",
+    plain: "longest over shortest link",
     template: "# link_ratio_max = 10           # longest over shortest link; 20 where silent\n",
     unit: LimitUnit::Ratio,
     is_asked: |_| true,

@@ -6,7 +6,7 @@ pub(super) const TYPE: Definition = Definition {
     key: "require.type",
     short: "type",
     label: "type",
-    plain: "how it is driven",
+    plain: "driven by",
     template: "type = [\"crank-rocker\", \"double-crank\"]   # a motor on the crank can turn fully\n",
     is_asked: |problem| !problem.spec().require.types.is_empty(),
     set_limits: |spec, _| spec.require.types.clear(),

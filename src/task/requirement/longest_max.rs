@@ -13,7 +13,7 @@ pub(super) const LONGEST_MAX: Definition = Definition {
     short: "longest link",
     label: "longest link, P included",
     relation: "at most ",
-    plain: "the longest link",
+    plain: "longest link",
     template: "# longest_max = 200             # no distance between two joints of one link is longer, P and pivots included;\n\
                #                               # where silent 3 sizes of the path, unless it has crank angles or something\n\
                #                               # above bounds lengths; \"any\" for no limit\n",

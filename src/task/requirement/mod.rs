@@ -143,7 +143,7 @@ pub struct Definition {
     pub label: &'static str,
     /// The relation of the value to the limit, with a blank: `at most `.
     pub relation: &'static str,
-    /// A noun phrase for the studio.
+    /// The label of the control that asks it in the studio.
     pub plain: &'static str,
     /// The lines about it in a problem file to start from.
     pub template: &'static str,

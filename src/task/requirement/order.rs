@@ -8,7 +8,7 @@ pub(super) const ORDER: Definition = Definition {
     key: "require.order",
     short: "order",
     label: "order of the points",
-    plain: "the order of the points",
+    plain: "passes the points in their order",
     is_asked: |problem: &Problem| problem.order_required() && problem.spec().task.path.timing.is_none(),
     set_limits: |spec, _| spec.require.order = OrderPolicy::Any,
     choice: |require| Some(Choice::Word(if require.order == OrderPolicy::Any { "any" } else { "required" })),

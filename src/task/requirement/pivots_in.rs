@@ -7,7 +7,7 @@ pub(super) const PIVOTS_IN: Definition = Definition {
     short: "pivots",
     label: "fixed pivots inside",
     relation: "in ",
-    plain: "the pivot box",
+    plain: "both fixed pivots inside a box",
     template: "# pivots_in = [-100, -100, 250, 250]      # xmin, ymin, xmax, ymax: where there is room for the two pivots\n",
     is_left_out_in_turn: true,
     is_asked: |problem| problem.spec().require.pivots_in.is_some(),

@@ -8,7 +8,7 @@ pub(super) const TOLERANCE: Definition = Definition {
     short: "tolerance",
     label: "error at the worst point",
     relation: "at most ",
-    plain: "the largest error",
+    plain: "largest error at a point",
     is_asked: |problem| problem.spec().task.path.tolerance.is_some(),
     limits,
     set_limits: |spec, limits| {

@@ -20,7 +20,7 @@ pub(super) const TRANSMISSION: Definition = Definition {
     short: "transmission",
     label: "worst transmission angle, °",
     relation: "at least ",
-    plain: "the least transmission angle",
+    plain: "least transmission angle",
     template: "transmission_deg_min = 30       # how well the coupler pushes the follower: 90 is best, below 30 it may jam\n",
     is_left_out_in_turn: true,
     unit: LimitUnit::Degree,
