@@ -23,7 +23,7 @@ pub struct Memory {
 
 #[pymethods]
 impl Memory {
-    /// What numpy makes an array of.
+    /// Describes the memory as numpy's array interface, of which it makes an array.
     #[getter]
     fn __array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let interface =

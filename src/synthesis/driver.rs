@@ -156,9 +156,12 @@ pub(super) fn drive<S: Strategy>(context: Context<'_>, allowance: Allowance, sea
         if search.is_done(context) {
             return if is_exact { Reason::TargetReached } else { Reason::Converged };
         }
-        let spent = if is_cut { limit } else { used.max(draws) };
+        if is_cut {
+            return Reason::EvaluationLimit;
+        }
+        let spent = used.max(draws);
         if spent >= limit || (spent >= patience && is_none) {
-            return if used < patience && !is_cut { Reason::Stalled } else { Reason::EvaluationLimit };
+            return if used < patience { Reason::Stalled } else { Reason::EvaluationLimit };
         }
     }
 }

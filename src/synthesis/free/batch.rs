@@ -4,16 +4,14 @@
 //! that the first rounds that they suffice for are read, and the others are dropped: a search with more evaluations reads
 //! the same rounds and further ones, so that its answer is no worse.
 
-use super::round::{Common, Finished, Reading, Round, Setup, finished, is_same, round, unfinished};
+use super::parts::{Allowed, Reading, in_order};
+use super::round::{Common, Finished, Round, Setup, finished, is_same, round, unfinished};
 use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Evaluations;
 use crate::synthesis::Context;
 use crate::synthesis::constants::free::{BATCH, DIFFERENT, LEADING};
-use crate::synthesis::driver::{share, spared};
 use crate::synthesis::states::{End, StageState};
-use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The results of a batch.
 pub(super) struct Batch {
@@ -57,8 +55,8 @@ impl Batch {
             // Shared evenly among all rounds of the batch, each with the fits that follow from it.
             let (parts, of) = (end - begin, BATCH - begin);
             let left = if all { left / of * parts + left % of * parts / of } else { left };
-            let is_exact = batch.wave(&common, begin..end, (left, all));
-            if is_exact || !batch.whole {
+            let is_exact = batch.wave(&common, begin..end, Allowed { left, parts, shared: all });
+            if is_exact || !(all || batch.whole) {
                 break;
             }
         }
@@ -68,13 +66,12 @@ impl Batch {
         batch
     }
 
-    /// Runs some of the rounds in parallel, then finishes the ends that they share, and reads those for which `left`
-    /// evaluations suffice, or `all`. Returns whether an exact answer is among them.
-    fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, (left, all): (u64, bool)) -> bool {
+    /// Runs some of the rounds in parallel, then finishes the ends that they share, and reads those that the evaluations
+    /// allowed suffice for, or all if they are shared. Returns whether an exact answer is among them.
+    fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, allowed: Allowed) -> bool {
         let setup = common.setup;
         let (first, bar) = (wave.start, self.stage.bar);
-        let allowed = Allowed { left, parts: wave.end - first, shared: all };
-        let reading = Reading::new(first..wave.end, left);
+        let reading = Reading::new(wave.clone(), allowed.left);
         let mut rounds: Vec<Round> =
             in_order(wave, |index| round(common, index, bar, allowed.of(index - first), &reading));
         if !setup.finishes_apart()
@@ -86,7 +83,7 @@ impl Batch {
         self.keep_those_that_fit(&mut rounds, allowed, |_, round| round.cost.objective);
         let mut done: Vec<Finished> = Vec::new();
         if setup.finishes_apart() {
-            done = self.finish(common, &mut rounds, (left, all));
+            done = self.finish(common, &mut rounds, allowed);
             let merits = done.iter().map(|done| (Exact(done.explored), Exact(done.end.merit)));
             self.stage.finished.extend(merits);
         }
@@ -111,20 +108,15 @@ impl Batch {
         exact
     }
 
-    /// Fits the ends of rounds to all points, each once, up to the first exact one. Drops the rounds for which, with the
-    /// fits of their ends, `left` evaluations do not suffice, unless `all` are read.
-    fn finish(
-        &mut self,
-        common: &Common<'_>,
-        rounds: &mut Vec<Round>,
-        (left, all): (u64, bool),
-    ) -> Vec<Finished> {
+    /// Fits the ends of rounds to all points, each once, up to the first exact one. Drops the rounds that the evaluations
+    /// allowed, if they are not shared, do not suffice for with the fits of their ends.
+    fn finish(&mut self, common: &Common<'_>, rounds: &mut Vec<Round>, allowed: Allowed) -> Vec<Finished> {
         let ends = unfinished(common.setup, rounds, &self.stage);
         let parts = ends.len() as u64;
         let used: u64 = rounds.iter().map(|round| round.cost.objective).sum();
-        let shared = Allowed { left: left.saturating_sub(used), parts, shared: true };
+        let shared = Allowed { left: allowed.left.saturating_sub(used), parts, shared: true };
         let allowance = |i: u64, round: &Round| {
-            if all { shared.of(i) } else { left.saturating_sub(round.cost.objective) }
+            if allowed.shared { shared.of(i) } else { allowed.left.saturating_sub(round.cost.objective) }
         };
         let reading = Reading::new(0..parts, u64::MAX);
         let mut finishes: Vec<(usize, Vec<Finished>, Evaluations)> = in_order(0..parts, |i| {
@@ -135,11 +127,10 @@ impl Batch {
         if let Some(exact) = finishes.iter().position(|(_, done, _)| done.iter().any(|end| end.exact)) {
             finishes.truncate(exact + 1);
         }
-        if all {
-            let costs = (0..).zip(&finishes).map(|(i, (.., cost))| (cost.objective, shared.of(i)));
-            self.whole &= costs.into_iter().all(|(cost, share)| spared(cost, share));
+        if allowed.shared {
+            let costs = finishes.iter().map(|(.., cost)| cost.objective);
+            self.whole &= shared.suffice_for(costs) == finishes.len();
         } else {
-            let allowed = Allowed { left, parts: 0, shared: false };
             self.keep_those_that_fit(rounds, allowed, |i, round| {
                 let own = finishes.iter().filter(|(round, ..)| *round == i);
                 round.cost.objective + own.map(|(.., cost)| cost.objective).sum::<u64>()
@@ -175,70 +166,5 @@ impl Batch {
             round.leaders.iter().any(|(merit, _)| is_same(explored.0, *merit)).then_some(whole.0)
         });
         own.chain(shared).fold(f64::INFINITY, f64::min)
-    }
-}
-
-/// Runs parts in parallel, the earlier ones first: those that end may tell later ones that they will not be read.
-fn in_order<T: Send>(parts: Range<u64>, run: impl Fn(u64) -> T + Sync) -> Vec<T> {
-    let next = AtomicU64::new(parts.start);
-    let mut done: Vec<(u64, T)> = parts
-        .into_par_iter()
-        .map(|_| {
-            let part = next.fetch_add(1, Ordering::Relaxed);
-            (part, run(part))
-        })
-        .collect();
-    done.sort_by_key(|(part, _)| *part);
-    done.into_iter().map(|(_, result)| result).collect()
-}
-
-/// The evaluations that parts which run in parallel may use.
-#[derive(Clone, Copy)]
-struct Allowed {
-    left: u64,
-    parts: u64,
-    /// Whether they are shared evenly; else each part may use all of them.
-    shared: bool,
-}
-
-impl Allowed {
-    /// Returns the evaluations that a part may use.
-    fn of(&self, part: u64) -> u64 {
-        if self.shared { share(self.left, self.parts, part) } else { self.left }
-    }
-
-    /// Returns the number of parts from the first on whose evaluations fit into those left together, and that their
-    /// allowance did not limit.
-    fn suffice_for(&self, costs: impl Iterator<Item = u64>) -> usize {
-        let mut sum = 0_u64;
-        let fits = |&(part, cost): &(u64, u64)| {
-            sum += cost;
-            sum <= self.left && spared(cost, self.of(part))
-        };
-        (0..).zip(costs).take_while(fits).count()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_first_parts_that_the_evaluations_suffice_for_are_read() {
-        let fit = |left, shared, costs: &[u64]| {
-            let allowed = Allowed { left, parts: costs.len() as u64, shared };
-            allowed.suffice_for(costs.iter().copied())
-        };
-        assert_eq!(fit(1000, false, &[400, 300, 300, 1]), 3);
-        assert_eq!(fit(1000, false, &[400, 300, 301, 1]), 2, "one that is cut ends them");
-        assert_eq!(fit(1000, false, &[900, 1]), 0, "one that came near its allowance may have been cut");
-        assert_eq!(fit(10, false, &[1, 1]), 0, "too little for any");
-        assert_eq!(fit(2400, true, &[500, 1100]), 1, "the second came near its half");
-        assert_eq!(fit(1000, false, &[]), 0);
-    }
-
-    #[test]
-    fn parts_run_in_parallel_and_come_back_in_their_order() {
-        assert_eq!(in_order(3..40, |part| part * part), (3..40).map(|part| part * part).collect::<Vec<_>>());
     }
 }

@@ -58,6 +58,7 @@ use stricter::{Kind, Stricter, stricter};
 
 mod batch;
 mod moves;
+mod parts;
 mod required;
 mod round;
 mod state;
@@ -365,8 +366,8 @@ impl Strategy for Free<'_> {
         let first = self.at.counts.batch * BATCH;
         let left = (left, self.best.is_none());
         let batch = Batch::run(context, &self.setups[now], &self.at.stages[now], first, left);
-        self.is_cut = !batch.whole;
         let whole = batch.whole;
+        self.is_cut = !whole;
         ((batch, now), whole)
     }
 

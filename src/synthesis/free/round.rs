@@ -2,6 +2,7 @@
 //! ends.
 
 use super::moves::{along_a_difference, near};
+use super::parts::Reading;
 use super::required::{led_back, strayed, worth_spending};
 use crate::judge::rank::searched;
 use crate::numbers::arithmetic::streams::{stream, uniform};
@@ -20,8 +21,6 @@ use crate::synthesis::starts::Starts;
 use crate::synthesis::states::{End, StageState};
 use crate::task::Problem;
 use crate::task::forms::start::Start;
-use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The data that all rounds share.
 pub(super) struct Setup<'a> {
@@ -219,43 +218,6 @@ fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f6
         }
     }
     (drawn, count)
-}
-
-/// What parts that run in parallel and are read in their order know of each other: a part that will not be read may
-/// stop.
-#[derive(Debug)]
-pub(super) struct Reading {
-    /// The index of the first part with an exact answer; those after it are not read.
-    exact: AtomicU64,
-    /// The index of the first part, and the evaluations of the parts that have ended.
-    first: u64,
-    spent: Vec<AtomicU64>,
-    /// The evaluations allowed; parts before which more were spent are not read.
-    left: u64,
-}
-
-impl Reading {
-    pub(super) fn new(parts: Range<u64>, left: u64) -> Self {
-        let (first, spent) = (parts.start, parts.map(|_| AtomicU64::new(0)).collect());
-        Reading { exact: AtomicU64::new(u64::MAX), first, spent, left }
-    }
-
-    /// Returns whether a part will not be read.
-    fn is_unread(&self, part: u64) -> bool {
-        let before =
-            self.spent.iter().take((part - self.first) as usize).map(|spent| spent.load(Ordering::Relaxed));
-        self.exact.load(Ordering::Relaxed) < part || before.sum::<u64>() > self.left
-    }
-
-    /// Records that a part ended.
-    fn ended(&self, part: u64, evaluations: u64, exact: bool) {
-        if exact {
-            self.exact.fetch_min(part, Ordering::Relaxed);
-        }
-        if let Some(spent) = self.spent.get((part - self.first) as usize) {
-            spent.store(evaluations, Ordering::Relaxed);
-        }
-    }
 }
 
 /// Runs round `index` of a batch: its ends on the explored points, and on a sparse target the finished ends. `bar` is
