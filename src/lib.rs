@@ -81,14 +81,13 @@ pub use report::export::{
 };
 pub use report::html::report_html;
 pub use synthesis::{Observer, Progress};
-pub use task::{AngleOffset, Defect, PathOptions, PathTask, Problem, ProblemBuilder, TaskError, Timing};
+pub use task::{AngleOffset, Defect, Problem, ProblemBuilder, Task, TaskError, TaskOptions, Timing};
 
 /// Problems as data: every key of a problem file.
 pub mod spec {
     pub use crate::task::spec::{
         CertifySpec, ClosingPolicy, DesignSpec, DirectionPolicy, Limits, Method, Objective, OnePolicy,
-        OrderPolicy, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec, TransmissionOver,
-        Variables,
+        OrderPolicy, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec, TransmissionOver, Variables,
     };
 }
 

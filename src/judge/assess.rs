@@ -121,7 +121,7 @@ pub fn assess_on_curve(
 /// Returns the distances from the points as they were given, before smoothing and resampling, to the coupler curve of a
 /// candidate; `None` if the target is those points themselves.
 pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorRecord> {
-    let raw = &problem.spec().task.path.raw.as_ref()?.points;
+    let raw = &problem.spec().task.raw.as_ref()?.points;
     let points: Vec<Complex> = raw.iter().copied().map(point).collect();
     let (first, assembly) = (candidate.crank_deg.first()?, candidate.t1_at.first()?);
     distances_to_curve(&points, &candidate.linkage, first.to_radians(), *assembly)

@@ -158,7 +158,7 @@ fn in_step(
     if cognate.crank.with != OriginalLink::Crank {
         return None;
     }
-    let written = &problem.spec().task.path.timing.as_ref()?.crank_deg;
+    let written = &problem.spec().task.timing.as_ref()?.crank_deg;
     let direction = direction(written, &candidate.crank_deg);
     let base = match offset {
         AngleOffset::Fixed if cognate.crank.phase.abs() > NO_PHASE => return None,

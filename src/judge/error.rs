@@ -4,7 +4,7 @@ use crate::mechanism::effort::{POINTS_AT_ONCE, computed};
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar};
 use crate::record::CurveErrorRecord;
-use crate::task::PathTask;
+use crate::task::Task;
 use rayon::prelude::*;
 
 /// The errors T_j - P_j at the positions of the points.
@@ -37,7 +37,7 @@ impl PathError {
     }
 }
 
-impl PathTask {
+impl Task {
     /// Returns the errors of a linkage at the given crank angles (radians) and assemblies, one per point; `None` if the
     /// loop is open at a point.
     ///

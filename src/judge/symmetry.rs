@@ -163,7 +163,7 @@ impl Symmetry {
 
 /// Returns the prescribed angles of a linkage, if the angles that it has are equal to them up to whole turns.
 fn in_step(problem: &Problem, linkage: &FourBar, offset: AngleOffset, has: &[f64]) -> Option<Vec<f64>> {
-    let written = &problem.spec().task.path.timing.as_ref()?.crank_deg;
+    let written = &problem.spec().task.timing.as_ref()?.crank_deg;
     let (first, asked) = (*has.first()?, *written.first()?);
     problem.directions().iter().find_map(|direction| {
         let base = match offset {

@@ -46,7 +46,7 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
 
 /// Returns the direction of the prescribed increments and the angle that is added to them, in radians.
 fn direction_and_offset(problem: &Problem, crank_deg: &[f64]) -> (f64, f64) {
-    let Some(timing) = &problem.spec().task.path.timing else { return (problem.directions()[0], 0.0) };
+    let Some(timing) = &problem.spec().task.timing else { return (problem.directions()[0], 0.0) };
     let written = &timing.crank_deg;
     let off = |direction: f64| {
         let steps = crank_deg.iter().zip(written);

@@ -59,7 +59,7 @@ impl Frame {
         let (centre, size) = (task.centre(), task.size());
         let upright = Similarity { from: [centre.re, centre.im], scale: 1.0 / size, ..Similarity::IDENTITY };
         let mut bare = spec.clone();
-        let path = &mut bare.task.path;
+        let path = &mut bare.task;
         (path.points, path.weight, path.tolerance, path.raw) = (Vec::new(), None, None, None);
         let items = items(&spec.placed(&upright).rounded(GRID));
         let mut least: Vec<Image> = Vec::new();
@@ -291,7 +291,7 @@ fn images() -> impl Iterator<Item = (bool, u8, bool)> {
 
 /// Returns the points of a problem with their weights and tolerances.
 fn items(spec: &ProblemSpec) -> Vec<Item> {
-    let path = &spec.task.path;
+    let path = &spec.task;
     let of = |list: &Option<Vec<f64>>, j: usize| list.as_ref().map_or(1.0, |list| list[j]);
     let item = |(j, &[x, y]): (usize, &[f64; 2])| [x, y, of(&path.weight, j), of(&path.tolerance, j)];
     path.points.iter().enumerate().map(item).collect()
@@ -410,8 +410,8 @@ mod tests {
         assert!(!any_start("closing = \"any\"") && any_start("closing = \"any\"\norder = \"any\""));
         assert!(!any_start("type = [\"triple-rocker\"]"));
         let mut spec = problem(draws, 12, "").spec().clone();
-        let first = spec.task.path.points[0];
-        spec.task.path.points.push(first);
+        let first = spec.task.points[0];
+        spec.task.points.push(first);
         assert!(!rotates(&Problem::new(spec).expect("a path")));
     }
 

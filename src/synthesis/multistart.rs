@@ -275,7 +275,7 @@ pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
             AngleOffset::Fixed => 0.0,
             AngleOffset::Ground => linkage.ground_angle().to_degrees(),
         };
-        let written = problem.spec().task.path.timing.as_ref()?;
+        let written = problem.spec().task.timing.as_ref()?;
         debug_assert_eq!(written.crank_deg.len(), crank_angles.len());
         let crank_deg: Vec<f64> =
             written.crank_deg.iter().map(|deg| base + end.setting.direction * deg).collect();

@@ -46,7 +46,7 @@ fn prescribed(
     linkage: &FourBar,
     offset: AngleOffset,
 ) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
-    let written = &problem.spec().task.path.timing.as_ref()?.crank_deg;
+    let written = &problem.spec().task.timing.as_ref()?.crank_deg;
     let assemblies = vec![linkage.assembly(); written.len()];
     let angles = |direction: f64, base_deg: f64| -> Vec<f64> {
         written.iter().map(|deg| base_deg + direction * deg).collect()

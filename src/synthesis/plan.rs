@@ -78,7 +78,7 @@ impl Place {
     /// Returns the place of a problem.
     pub(super) fn of(problem: &Problem) -> Place {
         let centre = problem.task().centre();
-        if problem.spec().task.path.timing.is_none() {
+        if problem.spec().task.timing.is_none() {
             let frame = Frame::of(problem);
             if frame.exact(problem).is_some() { Place::Frame(frame) } else { Place::AsItIs }
         } else if centre.norm() > FAR * problem.task().size() {
@@ -131,7 +131,7 @@ impl Place {
 /// move: angles that are counted from the ground line then count from the moved line.
 fn moved_back(problem: &Problem, candidate: &Candidate, by: Complex) -> Option<Candidate> {
     let linkage = candidate.linkage.shifted(by).ok()?;
-    let timing = problem.spec().task.path.timing.as_ref();
+    let timing = problem.spec().task.timing.as_ref();
     match timing.filter(|timing| timing.offset == AngleOffset::Ground) {
         None => assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at),
         Some(timing) => {

@@ -94,7 +94,7 @@ pub(super) fn searched_anew(
     spec.solve.evaluations = evaluations;
     spec.solve.method = Method::LeastSquares;
     // Tolerances and the largest deviation are left to the fits that follow.
-    spec.task.path.tolerance = None;
+    spec.task.tolerance = None;
     spec.solve.objective = Objective::SumOfSquares;
     spec.solve.candidates = answers;
     let tight = Problem::new(spec).ok()?;

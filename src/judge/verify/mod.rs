@@ -118,7 +118,7 @@ impl Comparison<'_> {
     /// Checks that the target's points are the raw points after smoothing and resampling.
     fn digitised(&mut self) {
         const POINTS: &str = "problem.resolved.task.path.points";
-        let path = &self.problem.spec().task.path;
+        let path = &self.problem.spec().task;
         let Some(raw) = &path.raw else { return };
         let found = raw.target(path.closed);
         let count = |points: &[[f64; 2]]| format!("{} points", points.len());
@@ -229,7 +229,7 @@ impl Comparison<'_> {
         self.under("error.to_curve.").curve(&r.to_curve, &f.to_curve, n);
         match (&r.to_raw, to_raw(problem, recorded)) {
             (Some(r), Some(f)) => {
-                let raw = problem.spec().task.path.raw.as_ref().map_or(0, |raw| raw.points.len());
+                let raw = problem.spec().task.raw.as_ref().map_or(0, |raw| raw.points.len());
                 self.under("error.to_raw.").curve(r, &f, raw);
             }
             (r, f) => {
@@ -328,7 +328,7 @@ impl Comparison<'_> {
     /// Checks that the crank angles are the prescribed ones, in whichever direction the timing lets them run.
     fn timing(&mut self, linkage: &FourBar, crank_deg: &[f64]) {
         let Timing::Prescribed { offset, .. } = self.problem.task().timing() else { return };
-        let Some(written) = &self.problem.spec().task.path.timing else { return };
+        let Some(written) = &self.problem.spec().task.timing else { return };
         let Some((first, written_first)) = crank_deg.first().zip(written.crank_deg.first()) else { return };
         let off = |direction: f64| {
             let pairs = crank_deg.iter().zip(&written.crank_deg);

@@ -9,7 +9,7 @@
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::four_bar::position::Kernel;
 use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, length, point, xy};
-use crate::task::PathTask;
+use crate::task::Task;
 use crate::task::spec::{DEFAULT_REACH, DesignSpec, Limits};
 use std::f64::consts::PI;
 
@@ -170,7 +170,7 @@ impl DesignSpace {
     /// `pivot_box` tightens the pivots' bounds; `side` is t2, used if d and e are the coordinates.
     pub fn new(
         spec: &DesignSpec,
-        task: &PathTask,
+        task: &Task,
         offset_free: bool,
         pivot_box: Option<[f64; 4]>,
         side: CouplerSide,
