@@ -167,7 +167,7 @@ impl Compatibility {
 
 #[cfg(test)]
 mod tests {
-    use super::super::fixture::{Moved, nearest, random_poses, size};
+    use super::super::fixture::{Moved, error, nearest, random_poses, size};
     use super::*;
     use crate::numbers::arithmetic::streams::stream;
 
@@ -180,10 +180,9 @@ mod tests {
             let curve = through_four_curve(&poses, 100);
             assert!(curve.len() > 50 && curve.len() <= 100, "case {case}: {}", curve.len());
             all += curve.len();
-            worst =
-                curve.iter().map(|dyad| dyad.largest_residual(&poses) / size(&poses)).fold(worst, f64::max);
+            worst = curve.iter().map(|dyad| error(dyad, &poses)).fold(worst, f64::max);
         }
-        assert!(worst < 1e-11 && all > 4500, "{worst:e}, {all}");
+        assert!(worst < 1e-12 && all > 4500, "{worst:e}, {all}");
         let (mut passed, cases) = (0, 50);
         for _ in 0..cases {
             let moved = Moved::random(draws, 4);

@@ -2,6 +2,9 @@
 
 use crate::mechanism::{Complex, Dyad, Pose, bounding_box, dot};
 
+/// Magnitude of positions, and of one over their size, from which on products of them overflow.
+const HUGE: f64 = 1e100;
+
 /// A shift and a scale of the ground; the body's frame is scaled alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
@@ -11,7 +14,8 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// Returns the scale of poses; `None` if their positions are all the same, or some number is not finite.
+    /// Returns the scale of poses; `None` if their positions are all the same, or some number is not finite or so large or
+    /// small that its square is not.
     pub fn of(poses: &[Pose]) -> Option<Self> {
         let finite = poses.iter().all(|pose| pose.position.is_finite() && pose.direction.is_finite());
         let [low, high] = bounding_box(poses.iter().map(|pose| pose.position));
@@ -19,7 +23,7 @@ impl Scale {
         // A difference of the positions' own rounding is no size.
         let rounding = 16.0 * f64::EPSILON * (low.norm() + high.norm());
         let scale = Scale { centre: (low + high) * 0.5, size };
-        (finite && size.is_finite() && size > rounding && 1.0 / size < f64::INFINITY).then_some(scale)
+        (finite && high.norm().max(low.norm()) < HUGE && size > rounding.max(1.0 / HUGE)).then_some(scale)
     }
 
     /// Returns a pose in the frame of the scale.
