@@ -72,7 +72,7 @@ impl Compatibility {
             .then(|| Compatibility { links: order.map(|k| links[k]), equations: order.map(|k| by_number[k]) })
     }
 
-    /// Returns positions [E1, E2, E3] at about `samples` steps along the linkage's circuits.
+    /// Returns positions [E1, E2, E3] at up to `samples` steps along the linkage's circuits.
     fn circuits(&self, samples: usize) -> Vec<[Complex; 3]> {
         let [drive, one, other] = self.links.map(|link| link.norm());
         let ground: Complex = self.links.iter().sum();
