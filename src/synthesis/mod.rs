@@ -14,6 +14,7 @@
 //! | [`context`] | the inputs that every search is given, as one value |
 //! | [`continuation`] | the method `continuation`: all linkages through nine precision points, as candidates, alone or beside the approximate answers of `auto` |
 //! | [`driver`] | the loop of every search in batches: states saved, a batch run, progress reported, the stopping rule asked |
+//! | [`dyads`] | Burmester's problem: the dyads that guide a body through given poses, exactly or nearly, and the linkages of two of them |
 //! | [`errors_without`] | the error that is left without each requirement that is active at the best candidate |
 //! | [`frame`] | the canonical frame in which problems of free timing are searched, and the way back of their candidates |
 //! | [`free`] | multistart search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt fits on the torus, and a stopping rule by repeated hits of the best answer |
@@ -49,6 +50,7 @@ mod constants;
 pub mod context;
 pub mod continuation;
 mod driver;
+pub mod dyads;
 mod ellipse;
 pub mod errors_without;
 pub(crate) mod fixture;
