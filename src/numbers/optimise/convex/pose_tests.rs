@@ -3,6 +3,7 @@
 use super::*;
 use crate::levenberg_marquardt::EachConstraint;
 use crate::test_poses::{Limit, Poses, Shared};
+use linkwright_arithmetic::streams::{below, stream, uniform};
 
 const COUNT: usize = 7;
 const NOISE: f64 = 0.08;
@@ -253,5 +254,24 @@ fn an_empty_third_row_leaves_the_answers_of_two() {
             let close = 1e-8 * two.objective;
             assert!((two.objective - three.objective).abs() < close, "{two:?}\n{three:?}");
         }
+    }
+}
+
+#[test]
+fn drawn_tolerances_of_every_part_end_where_line_searches_do() {
+    let mut draws = stream(99, 0);
+    for case in 0..10 {
+        let count = 3 + below(&mut draws, 9);
+        let problem = Poses::drawn(count, uniform(&mut draws, 0.005, 0.12));
+        let list: Vec<f64> = (0..2 * count).map(|_| uniform(&mut draws, 0.1, 1.0)).collect();
+        let nearest = solved(&problem, &Goal::MaxDeviation { tolerances: &list });
+        let known = least_deviation(&problem, &list);
+        assert!((nearest.objective - known).abs() < 1e-7 * known, "{case}: {} {known}", nearest.objective);
+        let list: Vec<f64> = list.iter().map(|tol| 1.05 * known * tol).collect();
+        let within = solved(&problem, &Goal::SumOfSquaresWithin { tolerances: &list });
+        let multipliers = within.multipliers.expect("a program was solved").points;
+        let known = least_within(&problem, &list, 0.1 + 2.0 * multipliers.iter().sum::<f64>());
+        assert!((within.objective - known).abs() < 1e-7 * known, "{case}: {} {known}", within.objective);
+        assert!(within.deviation < 1.0 + 1e-8, "{case}: {}", within.deviation);
     }
 }
