@@ -7,7 +7,7 @@
 use super::constants::coarse::{CORNER, DENSE, GROUPS};
 use crate::mechanism::{Complex, cross};
 use crate::task::forms::start::Start;
-use crate::task::forms::torus::{Positions, TorusFit};
+use crate::task::forms::torus::{PathFit, Positions};
 use crate::task::{Problem, Timing};
 use std::ops::Range;
 
@@ -130,7 +130,7 @@ impl Coarse {
         if dense.task().repeats_first() {
             positions.push(positions[0]);
         }
-        let fit = TorusFit::new(dense, coarse.setting);
+        let fit = PathFit::new(dense, coarse.setting);
         fit.settle(&coarse.design, &mut positions).then_some(Start {
             design: coarse.design,
             setting: coarse.setting,

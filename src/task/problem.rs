@@ -151,12 +151,18 @@ impl Problem {
         matches!(self.task.timing(), Timing::Prescribed { offset: AngleOffset::Free, .. })
     }
 
+    /// Returns whether the frame of a body, its angle from the coupler's direction, is an unknown of the design vector: in a
+    /// motion with free timing.
+    pub fn frame_is_free(&self) -> bool {
+        self.task.body().is_some() && matches!(self.task.timing(), Timing::Free)
+    }
+
     /// Returns the design space for a side of the coupler point.
     pub fn space(&self, side: CouplerSide) -> DesignSpace {
         DesignSpace::new(
             &self.spec.design,
             &self.task,
-            self.offset_is_free(),
+            self.offset_is_free() || self.frame_is_free(),
             self.spec.require.pivots_in,
             side,
         )

@@ -54,6 +54,12 @@ impl Similarity {
         90.0 * f64::from(self.turns) + if self.mirrors { -direction } else { direction }
     }
 
+    /// Returns the image of a body's angle, in degrees within half a turn.
+    pub fn direction(&self, angle: f64) -> f64 {
+        let image = self.degrees(angle);
+        image - 360.0 * (image / 360.0).round()
+    }
+
     /// Returns the similarity that takes every image back.
     #[must_use]
     pub fn inverse(&self) -> Self {
@@ -162,6 +168,10 @@ impl ProblemSpec {
             *deviation *= by.scale;
         }
         path.tolerance.iter_mut().flatten().for_each(|tolerance| *tolerance *= by.scale);
+        if let Some(body) = &mut path.body {
+            body.angle_weight *= by.scale;
+            body.angle_deg.iter_mut().flatten().for_each(|angle| *angle = by.direction(*angle));
+        }
         spec.design = by.design(&self.design);
         let require = &mut spec.require;
         for corners in [&mut require.pivots_in, &mut require.footprint_in].into_iter().flatten() {
@@ -187,6 +197,10 @@ impl ProblemSpec {
         for list in [&mut path.weight, &mut path.tolerance].into_iter().flatten() {
             *list = by.list(list);
         }
+        if let Some(body) = &mut path.body {
+            body.angle_deg = by.list(&body.angle_deg);
+            body.tolerance_deg = body.tolerance_deg.as_ref().map(|list| by.list(list));
+        }
         if by.reversed {
             if let Some(raw) = &mut path.raw {
                 raw.points.reverse();
@@ -209,6 +223,11 @@ impl ProblemSpec {
         let path = &mut spec.task;
         path.points.iter_mut().flatten().for_each(|x| *x = at(*x));
         path.tolerance.iter_mut().flatten().for_each(|x| *x = of_itself(*x));
+        if let Some(body) = &mut path.body {
+            body.angle_weight = of_itself(body.angle_weight);
+            // A radian has 64 degrees, roughly.
+            body.angle_deg.iter_mut().flatten().for_each(|angle| *angle = rounded_to(*angle, 64.0 * grid));
+        }
         let DesignSpec {
             crank_pivot,
             follower_pivot,

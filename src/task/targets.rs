@@ -289,6 +289,11 @@ impl Task {
         self.tolerances.as_deref()
     }
 
+    /// Returns whether an error is limited at each target: of the place or of the body's angle.
+    pub fn has_tolerances(&self) -> bool {
+        self.tolerances.is_some() || self.body.as_ref().is_some_and(|body| body.tolerances.is_some())
+    }
+
     /// Returns whether the target is a closed curve.
     pub fn closed(&self) -> bool {
         self.closed

@@ -346,7 +346,9 @@ fn continuation_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Checked<()> {
         return Ok(());
     };
     let key = match refusal {
-        precision::Refusal::Points { .. } | precision::Refusal::Timed => "solve.method".to_owned(),
+        precision::Refusal::Points { .. } | precision::Refusal::Timed | precision::Refusal::Motion => {
+            "solve.method".to_owned()
+        }
         precision::Refusal::Coincident { second, .. } => format!("task.path.points.{second}"),
     };
     toml.refuse(&key, refusal.to_string(), refusal.remedy())
