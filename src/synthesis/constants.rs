@@ -98,10 +98,15 @@ pub mod motion {
     /// Starts fitted for a few steps, and to convergence.
     pub const SHORT: usize = 8;
     pub const LONG: usize = 3;
-    /// Rounds that have to reach the best answer.
-    pub const HITS: usize = 3;
+    /// Rounds that have to reach the best answer, or to come near it.
+    pub const HITS: usize = 4;
+    pub const NEAR_HITS: usize = 10;
+    /// One round in so many starts near the best known answers: so many of them, and so many starts.
+    pub const NEAR_EVERY: u64 = 4;
+    pub const LEADERS: usize = 4;
+    pub const NEAR: usize = 12;
     /// Least number of batches, and batches without a new answer that end a search for further distinct answers.
-    pub const LEAST_BATCHES: u64 = 2;
+    pub const LEAST_BATCHES: u64 = 3;
     pub const QUIET_BATCHES: u64 = 8;
     /// Number of candidates kept while searching.
     pub const KEPT: usize = 200;

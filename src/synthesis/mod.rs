@@ -23,6 +23,7 @@
 //! | [`live`] | live fitting to a target that the user moves: known candidates follow it by warm starts, and the answers of a search join them |
 //! | [`local`] | the local searches by least squares, chosen by the timing |
 //! | [`motion`] | multistart search for the poses of a body with free timing: starts from dyads, joint fits, and a stopping rule by repeated hits |
+//! | [`moves`] | starts made from known ends: near one, or along the difference of two |
 //! | [`multistart`] | multistart: Levenberg-Marquardt fits from many starts, in rounds |
 //! | [`nearest`] | positions at which a given linkage is nearest to a task's points: for linkages that were not placed by a search |
 //! | [`offered_cognates`] | the offer of Roberts cognates beside the candidates of a search |
@@ -63,6 +64,7 @@ pub mod keeper;
 pub mod live;
 mod local;
 mod motion;
+mod moves;
 pub mod multistart;
 pub mod nearest;
 pub mod offered_cognates;

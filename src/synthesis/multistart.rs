@@ -12,13 +12,13 @@ use super::Context;
 use super::constants::multistart::{LONG, SCREEN, SETTLING, SHORT};
 use super::polish::reserve;
 use super::starts::Starts;
-use crate::judge::assess::{assess, assess_on_curve};
+use crate::judge::assess::assess_on_curve;
 use crate::judge::rank::exact_cost;
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::numbers::arithmetic::streams::stream;
 use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, solve};
-use crate::record::{Candidate, Evaluations};
+use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Evaluations};
 use crate::task::forms::design_space::Design;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
@@ -277,8 +277,23 @@ pub fn settle_positions(
     (!matches!(result.outcome, LmOutcome::NoStart)).then_some(result.state)
 }
 
+/// As [`judged`], with the errors at the points in place of the distances to the whole curve, which take most of the time
+/// of a verdict: for candidates that are measured later if they are listed.
+pub(super) fn glanced(problem: &Problem, end: &Start) -> Option<Candidate> {
+    const UNKNOWN: CurveErrorRecord = CurveErrorRecord { sum_sq: 0.0, rms: 0.0, max: 0.0 };
+    let mut candidate = judged_with(problem, end, Some(UNKNOWN))?;
+    let ErrorRecord { sum_sq, rms, max, .. } = candidate.error;
+    candidate.error.to_curve = CurveErrorRecord { sum_sq, rms, max };
+    Some(candidate)
+}
+
 /// Returns the judged candidate of a fit's end; `None` if it cannot be judged.
 pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
+    judged_with(problem, end, None)
+}
+
+/// As [`judged`]; `to_curve` as for [`assess_on_curve`].
+fn judged_with(problem: &Problem, end: &Start, to_curve: Option<CurveErrorRecord>) -> Option<Candidate> {
     let space = problem.space(end.setting.side);
     let shape = space.shape(&end.design)?;
     let task = problem.task();
@@ -295,7 +310,8 @@ pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
         debug_assert_eq!(written.crank_deg.len(), crank_angles.len());
         let crank_deg: Vec<f64> =
             written.crank_deg.iter().map(|deg| base + end.setting.direction * deg).collect();
-        return assess(problem, &linkage, &crank_deg, &vec![end.setting.assembly; crank_deg.len()]);
+        let assemblies = vec![end.setting.assembly; crank_deg.len()];
+        return assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), None, to_curve);
     }
     let assemblies = end.positions.iter().map(|[e, u]| assembly_of(&shape, *e, *u)).collect::<Vec<_>>();
     let linkage = shape.linkage(assemblies[0]).ok()?;
@@ -305,5 +321,5 @@ pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
     // Unless deviations count one by one, the frame is the one of the least errors.
     let frame = (problem.frame_is_free() && reserve(problem, 1000) > 0)
         .then(|| wrapped(space.offset(&end.design)).to_degrees());
-    assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), frame, None)
+    assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), frame, to_curve)
 }

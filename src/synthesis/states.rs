@@ -29,7 +29,7 @@ pub struct SearchState {
     pub(super) rounds: Option<RoundsState>,
     /// State of a motion search.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) motion: Option<RoundsState>,
+    pub(super) motion: Option<MotionState>,
     /// State of a population search.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) population: Option<RestartsState>,
@@ -141,8 +141,22 @@ pub struct TimedState {
     pub(super) binding_waves: u64,
 }
 
-/// The state of the multistart rounds of prescribed timing in the physical parameters, or of a motion search, between two
-/// batches.
+/// The state of a motion search between two batches.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct MotionState {
+    pub(super) found: Vec<Candidate>,
+    pub(super) evaluations: Evaluations,
+    pub(super) best: Option<Candidate>,
+    pub(super) belief: Belief,
+    /// Independent rounds so far.
+    pub(super) independent: u64,
+    pub(super) known: usize,
+    pub(super) quiet: u64,
+    pub(super) batch: u64,
+    pub(super) draws: u64,
+}
+
+/// The state of the multistart rounds of prescribed timing in the physical parameters between two batches.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct RoundsState {
     pub(super) found: Vec<Candidate>,

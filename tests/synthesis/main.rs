@@ -16,6 +16,8 @@ mod deviation;
 mod invariance;
 mod ladder;
 mod motion;
+#[path = "../common/poses.rs"]
+mod poses;
 mod projection;
 mod properties;
 #[path = "../common/random.rs"]

@@ -1,20 +1,22 @@
 //! Poses of a body: what the search finds, and that every figure of a record is that of the linkage.
 
 use crate::common::parse;
-use crate::random::{ROCKING, TURNING, linkage, one_of, trace};
+use crate::poses::{Taken, taken, text, wide};
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::mechanism::Complex;
-use linkwright::internals::numbers::arithmetic::streams::{Stream, below, normal, stream, uniform};
+use linkwright::internals::numbers::arithmetic::streams::{stream, uniform};
 use linkwright::internals::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, LmOptions, derivative_error, solve,
 };
+use linkwright::internals::synthesis::multistart::judged;
 use linkwright::internals::task::Setting;
 use linkwright::internals::task::forms::design_space::Shape;
+use linkwright::internals::task::forms::start::Start;
 use linkwright::internals::task::forms::torus::MotionFit;
 use linkwright::internals::task::similarity::{Numbering, Similarity};
 use linkwright::spec::ProblemSpec;
-use linkwright::{Candidate, Context, CouplerSide, FourBar, Job, Problem, Record, run};
-use std::f64::consts::{PI, TAU};
+use linkwright::{Candidate, Context, CouplerSide, Job, Problem, Record, run};
+use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
 fn solved(spec: ProblemSpec) -> Record {
@@ -26,57 +28,9 @@ fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// Poses of a body on a coupler, with the linkage that takes it through them and the body's frame.
-struct Taken {
-    linkage: FourBar,
-    positions: Vec<(f64, linkwright::AssemblyMode)>,
-    frame: f64,
-    /// Places and angles, radians.
-    poses: Vec<(Complex, f64)>,
-}
-
-/// Draws a linkage of any type and `n` poses on one of its branches; noise in parts of the size and of a radian.
-fn taken(draws: &mut Stream, n: usize, noise: f64) -> Taken {
-    loop {
-        let turning = below(draws, 2) == 0;
-        let of = if turning { one_of(draws, &TURNING) } else { one_of(draws, &ROCKING) };
-        let linkage = linkage(draws, of);
-        let span = if turning { uniform(draws, 2.0, 5.8) } else { uniform(draws, 0.8, 2.4) };
-        let Some(traced) = trace(draws, &linkage, n, Some(span)) else { continue };
-        let one_branch = traced.positions.iter().all(|(_, t)| *t == traced.positions[0].1);
-        let size = traced.size();
-        let frame = uniform(draws, -PI, PI);
-        let coupler = |(angle, t): &(f64, linkwright::AssemblyMode)| {
-            let joints = traced.linkage.position_with(*angle, *t).joints().expect("it closes");
-            (joints.follower_pin - joints.crank_pin).arg()
-        };
-        if !one_branch || size < 0.05 * linkage.longest_link() || linkage.link_ratio() > 15.0 {
-            continue;
-        }
-        let mut pose = |(point, at): (&Complex, &(f64, linkwright::AssemblyMode))| {
-            let off = Complex::new(normal(draws, 0.0, noise * size), normal(draws, 0.0, noise * size));
-            (point + off, coupler(at) + frame + normal(draws, 0.0, noise))
-        };
-        let poses = traced.points.iter().zip(&traced.positions).map(&mut pose).collect();
-        return Taken { linkage: traced.linkage, positions: traced.positions.clone(), frame, poses };
-    }
-}
-
-/// A problem of these poses with bounds that leave room for any linkage of the tests.
+/// The problem of these poses.
 fn problem(poses: &[(Complex, f64)], lines: &str) -> ProblemSpec {
-    let rows: Vec<[f64; 3]> = poses.iter().map(|(p, angle)| [p.re, p.im, angle.to_degrees()]).collect();
-    parse(&format!("format = 1\n[task.motion]\nposes = {rows:?}\n{lines}")).spec
-}
-
-/// Wide bounds around the first pose, in units of `far`.
-fn wide(at: Complex, far: f64) -> String {
-    let (x, y) = ([at.re - far, at.re + far], [at.im - far, at.im + far]);
-    let l = [1e-3 * far, far];
-    let o = [-far, far];
-    format!(
-        "[design]\nA = [{x:?}, {y:?}]\nB = [{x:?}, {y:?}]\na = {l:?}\nb = {l:?}\nc = {l:?}\nground = {l:?}\n\
-         coupler_x = {o:?}\ncoupler_y = {o:?}\n"
-    )
+    parse(&text(poses, lines)).spec
 }
 
 const ALONE: &str = "[solve]\ncandidates = 1\nadvice = false\n";
@@ -126,7 +80,8 @@ fn assert_true(record: &Record) {
     assert_eq!(verify(record).expect("a record"), []);
 }
 
-/// The objective that a fit from the truth reaches: the linkage that the poses were taken from.
+/// The objective that a fit from the truth reaches, the linkage that the poses were taken from; infinite if its end is not
+/// accepted.
 fn from_the_truth(problem: &Problem, taken: &Taken) -> f64 {
     let shape = Shape::from(&taken.linkage);
     let position = |(angle, t): &(f64, linkwright::AssemblyMode)| {
@@ -147,7 +102,10 @@ fn from_the_truth(problem: &Problem, taken: &Taken) -> f64 {
         hopeless_cost: f64::INFINITY,
     };
     let fit = MotionFit::new(problem, setting).in_order(&design, &positions);
-    solve(&fit, design, positions, &options, &|| false).cost
+    let end = solve(&fit, design, positions, &options, &|| false);
+    let end = Start { design: end.x, setting, positions: end.state };
+    let candidate = judged(problem, &end).filter(|candidate| candidate.accepted);
+    candidate.map_or(f64::INFINITY, |candidate| candidate.error.objective)
 }
 
 #[test]

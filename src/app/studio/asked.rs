@@ -26,6 +26,9 @@ pub enum NotHere {
          synth`, or write `samples = 60` in [task.path] to take that many along it"
     )]
     Points(usize),
+    /// The task is a motion.
+    #[error("the studio draws paths, and this task has poses: run it with `linkwright synth`")]
+    Poses,
     /// The problem is another one after it is converted to an edit and back.
     #[error("the studio cannot hold all of this problem ({0}): run it with `linkwright synth`")]
     Other(String),
@@ -267,6 +270,9 @@ impl Ask {
     /// [`NotHere`] if the studio cannot hold it.
     pub fn of(problem: &ProblemFile) -> Result<Ask, NotHere> {
         let ProblemSpec { task: path, require, solve, .. } = &problem.spec;
+        if path.body.is_some() {
+            return Err(NotHere::Poses);
+        }
         let n = path.points.len();
         if !(FEWEST_POINTS..=MOST_POINTS).contains(&n) {
             return Err(NotHere::Points(n));
@@ -411,6 +417,10 @@ mod tests {
                     continue;
                 }
                 let problem = load_any(&path, &[]).expect("a problem");
+                if problem.spec.task.body.is_some() {
+                    assert!(matches!(Ask::of(&problem), Err(NotHere::Poses)), "{}", path.display());
+                    continue;
+                }
                 let ask = Ask::of(&problem).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
                 // Over the wire and back.
                 let wire: Ask =

@@ -58,7 +58,6 @@ use round::Setup;
 use stricter::{Kind, Stricter, stricter};
 
 mod batch;
-mod moves;
 mod parts;
 mod round;
 mod state;

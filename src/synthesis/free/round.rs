@@ -1,7 +1,6 @@
 //! One round of the search for free timing: starts, short fits, longer fits of the best, and the treatment of their
 //! ends.
 
-use super::moves::{along_a_difference, near};
 use super::parts::Reading;
 use crate::judge::rank::searched;
 use crate::numbers::arithmetic::streams::{stream, uniform};
@@ -14,6 +13,7 @@ use crate::synthesis::constants::free::{
     BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, DENSE_WORTH_FINISHING, JITTERED, MATCHED, MIDDLE,
     MIDDLE_FIT, REASSIGNED, SCREEN, SHORT, SHORT_FIT, WORTH_FINISHING,
 };
+use crate::synthesis::moves::{along_a_difference, near};
 use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
 use crate::synthesis::reassign::{Reassigned, reassigned};
 use crate::synthesis::required::worth_spending;

@@ -11,18 +11,22 @@
 mod family;
 mod starts;
 
-use super::belief::SAME_OPTIMUM;
+use super::belief::{Belief, SAME_OPTIMUM};
 use super::constants::motion::{
-    BATCH, FAMILY_BATCHES, HITS, KEPT, LEAST_BATCHES, LONG, QUIET_BATCHES, SHORT,
+    BATCH, FAMILY_BATCHES, HITS, KEPT, LEADERS, LEAST_BATCHES, LONG, NEAR, NEAR_EVERY, NEAR_HITS,
+    QUIET_BATCHES, SHORT,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
-use super::multistart::{LONG_FIT, RoundOutcome, SHORT_FIT, Spender, by_merit, judged, promise};
+use super::moves::near;
+use super::multistart::{LONG_FIT, RoundOutcome, SHORT_FIT, Spender, by_merit, glanced, promise};
 use super::polish::promising;
-use super::states::{RoundsState, SearchState, of_as_many_points};
+use super::states::{MotionState, SearchState, of_as_many_points};
 use super::{Context, HitsSoFar};
 use crate::judge::rank::{exact_cost, searched, sort};
-use crate::numbers::arithmetic::streams::stream;
+use crate::judge::warm::start_at;
+use crate::numbers::arithmetic::streams::{Stream, stream};
 use crate::record::{Candidate, Repeats};
+use crate::task::Problem;
 use crate::task::forms::start::Start;
 use family::{climb, freedom};
 use starts::{DyadStarts, least_sine, swapped};
@@ -32,7 +36,7 @@ struct Motion<'a> {
     exact: f64,
     /// The number of free parameters that are left when all targets are met.
     freedom: usize,
-    at: RoundsState,
+    at: MotionState,
 }
 
 /// Searches until the best is believed, the limit is reached, or the patience is at an end; `None` if the task is no
@@ -46,7 +50,10 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
         starts: DyadStarts::new(problem),
         exact: exact_cost(problem),
         freedom: freedom(problem),
-        at: earlier.unwrap_or_default(),
+        at: earlier.unwrap_or_else(|| MotionState {
+            belief: Belief::new(exact_cost(problem)),
+            ..MotionState::default()
+        }),
     };
     let reason = drive(context, allowance, &mut search);
     let mut at = search.at;
@@ -54,9 +61,9 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
         let left = allowance.limit.saturating_sub(at.evaluations.objective);
         at.evaluations += context.cost(climb(context, &mut at.found, left));
     }
-    let hits = at.hits as u64;
+    let (hits, near) = at.belief.hits();
     Some(Found {
-        repeats: at.best.is_some().then(|| Repeats::new(at.batch * BATCH, hits, hits)),
+        repeats: at.best.is_some().then(|| Repeats::new(at.independent, hits as u64, near as u64)),
         candidates: at.found,
         evaluations: at.evaluations,
         reason,
@@ -65,15 +72,43 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
 }
 
 impl Motion<'_> {
+    /// Returns whether a round starts near known answers; it does not count for the stopping rule.
+    fn is_near(&self, index: u64) -> bool {
+        self.freedom == 0 && index % NEAR_EVERY == NEAR_EVERY - 1 && index / BATCH > 0
+    }
+
+    /// Returns starts near the best known answers.
+    fn near(&self, problem: &Problem, draws: &mut Stream) -> Vec<Start> {
+        let mut leaders: Vec<&Candidate> =
+            self.at.found.iter().filter(|candidate| promising(problem, candidate)).collect();
+        // Of one answer, once from either side.
+        leaders.dedup_by(|one, other| {
+            let (one, other) = (one.error.objective, other.error.objective);
+            (one - other).abs() <= SAME_OPTIMUM * other
+        });
+        leaders.truncate(LEADERS);
+        let ends: Vec<Start> =
+            leaders.into_iter().filter_map(|candidate| start_at(problem, candidate)).collect();
+        if ends.is_empty() {
+            return Vec::new();
+        }
+        (0..NEAR).filter_map(|i| near(problem, &ends[i % ends.len()], draws)).collect()
+    }
+
     /// Runs round `index` of the search with at most `allowance` evaluations.
     fn round(&self, context: Context<'_>, index: u64, allowance: u64) -> RoundOutcome {
         let problem = context.problem;
         let mut spender = Spender::new(context, allowance);
         let mut outcome = RoundOutcome::default();
         let mut draws = stream(problem.spec().solve.seed, index);
-        let dyads = self.starts.dyads(index == 0, &mut draws);
+        let dyads = |draws: &mut Stream| self.starts.dyads(index == 0, draws);
         let mut screened: Vec<(f64, Start)> = Vec::new();
-        for mut start in self.starts.pairs(&dyads) {
+        let starts = if self.is_near(index) {
+            self.near(problem, &mut draws)
+        } else {
+            self.starts.pairs(&dyads(&mut draws))
+        };
+        for mut start in starts {
             if spender.is_at_its_end() {
                 break;
             }
@@ -103,8 +138,8 @@ impl Motion<'_> {
             if !judging.may_go_on() {
                 break;
             }
-            let driven_otherwise = swapped(problem, &end).and_then(|end| judged(problem, &end));
-            let both = judged(problem, &end).into_iter().chain(driven_otherwise);
+            let driven_otherwise = swapped(problem, &end).and_then(|end| glanced(problem, &end));
+            let both = glanced(problem, &end).into_iter().chain(driven_otherwise);
             let accepted = |candidate: &Candidate| candidate.accepted;
             let both: Vec<Candidate> = both.collect();
             let any = both.iter().any(accepted);
@@ -114,20 +149,19 @@ impl Motion<'_> {
         outcome
     }
 
-    /// Returns whether a candidate hits the best one, which it becomes if it is better.
-    fn take_hit(&mut self, context: Context<'_>, candidate: &Candidate) -> bool {
+    /// Takes a candidate as the best if it is better; `independent`: whether its round counts for the stopping rule.
+    fn take(&mut self, context: Context<'_>, candidate: &Candidate, independent: bool) {
         if !promising(context.problem, candidate) {
-            return false;
+            return;
         }
         let error = searched(context.problem, candidate);
-        let bar = self.at.best.as_ref().map_or(f64::INFINITY, |best| searched(context.problem, best));
-        if error < bar - SAME_OPTIMUM * bar.max(self.exact) && bar > self.exact {
-            self.at.hits = 0;
+        if independent || self.at.belief.would_improve(error) {
+            self.at.belief.came_to(error);
         }
+        let bar = self.at.best.as_ref().map_or(f64::INFINITY, |best| searched(context.problem, best));
         if error < bar {
             self.at.best = Some(candidate.clone());
         }
-        error <= bar + (SAME_OPTIMUM * bar).max(self.exact)
     }
 }
 
@@ -140,13 +174,13 @@ impl Strategy for Motion<'_> {
     }
 
     fn standing(&self) -> Standing<'_> {
-        let RoundsState { ref found, ref best, evaluations, draws, hits, .. } = self.at;
+        let MotionState { ref found, ref best, ref belief, evaluations, draws, .. } = self.at;
         Standing {
             evaluations: evaluations.objective,
             draws,
             best: best.as_ref(),
             nearest: found.first(),
-            hits: best.as_ref().map(|_| HitsSoFar { came: hits, wanted: HITS }),
+            hits: best.as_ref().map(|_| HitsSoFar { came: belief.hits().0, wanted: HITS }),
             is_cut: false,
         }
     }
@@ -157,16 +191,20 @@ impl Strategy for Motion<'_> {
     }
 
     fn read(&mut self, context: Context<'_>, batch: Self::Batch) {
+        let first = self.at.batch * BATCH;
         self.at.batch += 1;
-        for outcome in batch {
+        for (index, outcome) in (first..).zip(batch) {
+            let independent = !self.is_near(index);
             self.at.draws += outcome.draws;
             self.at.evaluations += outcome.evaluations;
-            let mut hit = false;
             for candidate in outcome.found {
-                hit |= self.take_hit(context, &candidate);
+                self.take(context, &candidate, independent);
                 self.at.found.push(candidate);
             }
-            self.at.hits += usize::from(hit);
+            if independent {
+                self.at.independent += 1;
+                self.at.belief.end_batch();
+            }
         }
         sort(context.problem, &mut self.at.found);
         self.at.found.truncate(KEPT);
@@ -179,8 +217,9 @@ impl Strategy for Motion<'_> {
         if self.freedom > 0 && is_exact && at.batch < FAMILY_BATCHES {
             return false;
         }
-        let is_believed = at.hits >= HITS && at.batch >= LEAST_BATCHES;
-        (is_believed || is_exact && at.hits > 0)
+        let (hits, near) = at.belief.hits();
+        let is_believed = (hits >= HITS || near >= NEAR_HITS) && at.batch >= LEAST_BATCHES;
+        (is_believed || is_exact)
             && are_enough(context, &at.found, wanted, (&mut at.known, &mut at.quiet), QUIET_BATCHES)
     }
 }
