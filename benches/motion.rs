@@ -31,6 +31,9 @@ use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+/// The time of a search, in milliseconds, beyond which it is listed.
+const SLOW_MS: f64 = 200.0;
+
 /// Returns the value of an option of the command line.
 fn option(name: &str, default: u64) -> u64 {
     let mut arguments = std::env::args().skip_while(|argument| argument != name);
@@ -86,7 +89,14 @@ fn main() {
         let context = RunContext { cancel: &AtomicBool::new(false), observer: &|_| {} };
         let begun = Instant::now();
         let record = one.install(|| run(&job, &context)).expect("a run").record;
-        times.push(begun.elapsed().as_secs_f64() * 1e3);
+        let took = begun.elapsed().as_secs_f64() * 1e3;
+        times.push(took);
+        if took > SLOW_MS {
+            println!(
+                "problem {index}: {n} poses, noise {noise}: {took:.0} ms, {:?} after {} evaluations, {:?}",
+                record.termination.reason, record.evaluations.objective, record.repeats
+            );
+        }
         let best = record.candidates.iter().find(|candidate| candidate.accepted);
         nothing += u64::from(best.is_none());
         let own = best.map_or(f64::INFINITY, |best| best.error.objective);

@@ -101,6 +101,10 @@ pub mod motion {
     /// Rounds that have to reach the best answer, or to come near it.
     pub const HITS: usize = 4;
     pub const NEAR_HITS: usize = 10;
+    /// A search ends that has gone on for so many independent rounds, and so many times as long as it took to come within
+    /// a thousandth of its best answer.
+    pub const QUIET_ROUNDS: u64 = 36;
+    pub const QUIET_TIMES: u64 = 5;
     /// One round in so many starts near the best known answers: so many of them, and so many starts.
     pub const NEAR_EVERY: u64 = 4;
     pub const LEADERS: usize = 4;

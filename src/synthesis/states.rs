@@ -148,6 +148,8 @@ pub struct MotionState {
     pub(super) evaluations: Evaluations,
     pub(super) best: Option<Candidate>,
     pub(super) belief: Belief,
+    /// The evaluations after which the best answer was found.
+    pub(super) reached: u64,
     /// Independent rounds so far.
     pub(super) independent: u64,
     pub(super) known: usize,

@@ -4,17 +4,17 @@
 //! A round makes a linkage of every two of its dyads ([`starts`]), fits the `SHORT` most promising for a few steps and the
 //! best `LONG` of them to convergence, and has the ends judged, driven from either side. Rounds run in parallel in batches
 //! and are read in their order: the number of threads changes nothing but the time. The search ends when enough rounds
-//! have reached the best answer and as many distinct answers as were asked for are known, or no new one has come for
+//! have reached the best answer (or the search has gone on for several times as long as it took to reach it) and as many distinct answers as were asked for are known, or no new one has come for
 //! `QUIET_BATCHES` batches; an exact answer needs no second hit. Where exact answers form a family ([`family`]), several
 //! batches are searched and the best answers led to better transmission angles.
 
 mod family;
 mod starts;
 
-use super::belief::{Belief, SAME_OPTIMUM};
+use super::belief::{Belief, NEARLY, SAME_OPTIMUM};
 use super::constants::motion::{
     BATCH, FAMILY_BATCHES, HITS, KEPT, LEADERS, LEAST_BATCHES, LONG, NEAR, NEAR_EVERY, NEAR_HITS,
-    QUIET_BATCHES, SHORT,
+    QUIET_BATCHES, QUIET_ROUNDS, QUIET_TIMES, SHORT,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
 use super::moves::near;
@@ -160,6 +160,9 @@ impl Motion<'_> {
         }
         let bar = self.at.best.as_ref().map_or(f64::INFINITY, |best| searched(context.problem, best));
         if error < bar {
+            if error < bar * (1.0 - NEARLY) {
+                self.at.reached = self.at.evaluations.objective;
+            }
             self.at.best = Some(candidate.clone());
         }
     }
@@ -218,7 +221,9 @@ impl Strategy for Motion<'_> {
             return false;
         }
         let (hits, near) = at.belief.hits();
-        let is_believed = (hits >= HITS || near >= NEAR_HITS) && at.batch >= LEAST_BATCHES;
+        let is_quiet = at.independent >= QUIET_ROUNDS && at.evaluations.objective >= QUIET_TIMES * at.reached;
+        let is_believed =
+            at.batch >= LEAST_BATCHES && (hits >= HITS || near >= NEAR_HITS || is_quiet && at.best.is_some());
         (is_believed || is_exact)
             && are_enough(context, &at.found, wanted, (&mut at.known, &mut at.quiet), QUIET_BATCHES)
     }
