@@ -85,6 +85,7 @@ pub use task::{AngleOffset, Defect, Problem, ProblemBuilder, Task, TaskError, Ta
 
 /// Problems as data: every key of a problem file.
 pub mod spec {
+    pub use crate::task::region::Region;
     pub use crate::task::spec::{
         CertifySpec, ClosingPolicy, DesignSpec, DirectionPolicy, Limits, Method, Objective, OnePolicy,
         OrderPolicy, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec, TransmissionOver, Variables,

@@ -7,6 +7,7 @@
 //! | [`forms`] | the task as mathematics: design space, residuals with derivatives, requirements, fitness |
 //! | `limits` | intervals in which the parameters of a design lie |
 //! | [`problem`] | a checked `ProblemSpec`, and the discrete choices of a search besides the design vector (`Setting`) |
+//! | [`region`] | regions of the plane: a box along the axes, or a polygon |
 //! | [`requirement`] | requirements on a linkage, one file each: key, parsing, limits with their outward side, unit and words |
 //! | [`resampling`] | smoothing and resampling of digitised points into a target |
 //! | [`similarity`] | similarities that map the axes to themselves and renumberings of a path's points, of a whole problem |
@@ -19,6 +20,7 @@ pub mod defect;
 pub mod forms;
 mod limits;
 pub mod problem;
+pub mod region;
 pub mod requirement;
 pub mod resampling;
 pub mod similarity;

@@ -9,6 +9,7 @@ use super::spec::{
 use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType};
 use crate::task::forms::design_space::DesignSpace;
 use crate::task::forms::rows::Requirements;
+use crate::task::region::Region;
 use crate::task::{AngleOffset, Return, Task, TaskError, Timing};
 use serde::{Deserialize, Serialize};
 
@@ -163,7 +164,7 @@ impl Problem {
             &self.spec.design,
             &self.task,
             self.offset_is_free() || self.frame_is_free(),
-            self.spec.require.pivots_in,
+            self.spec.require.pivots_in.as_ref().map(Region::corners),
             side,
         )
     }

@@ -10,6 +10,7 @@
 //! These keep boxes along the axes boxes along the axes, so every key of a problem has its image.
 
 use crate::task::limits::Limits;
+use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, DirectionPolicy, ProblemSpec};
 
 /// A similarity that maps the axes of coordinates to themselves.
@@ -174,7 +175,12 @@ impl ProblemSpec {
         }
         spec.design = by.design(&self.design);
         let require = &mut spec.require;
-        for corners in [&mut require.pivots_in, &mut require.footprint_in].into_iter().flatten() {
+        match &mut require.pivots_in {
+            Some(Region::Box(corners)) => *corners = by.corners(*corners),
+            Some(Region::Polygon(points)) => points.iter_mut().for_each(|point| *point = by.point(*point)),
+            None => {}
+        }
+        if let Some(corners) = &mut require.footprint_in {
             *corners = by.corners(*corners);
         }
         for length in [&mut require.extent_max, &mut require.longest_max].into_iter().flatten() {
@@ -248,9 +254,8 @@ impl ProblemSpec {
             both(&of_itself, limits);
         }
         let require = &mut spec.require;
-        for x in [&mut require.pivots_in, &mut require.footprint_in].into_iter().flatten().flatten() {
-            *x = at(*x);
-        }
+        let region = require.pivots_in.iter_mut().flat_map(Region::points_mut);
+        region.chain(require.footprint_in.iter_mut().flatten()).for_each(|x| *x = at(*x));
         for x in [&mut require.extent_max, &mut require.longest_max].into_iter().flatten() {
             *x = of_itself(*x);
         }
@@ -273,7 +278,8 @@ impl ProblemSpec {
             design.coupler_x,
             design.coupler_y,
         ];
-        let boxes = [self.require.pivots_in, self.require.footprint_in].into_iter().flatten().flatten();
+        let region = self.require.pivots_in.iter().flat_map(Region::numbers);
+        let boxes = region.chain(self.require.footprint_in.into_iter().flatten());
         let mut limits: Vec<f64> =
             pivots.chain(lengths.into_iter().flatten()).flat_map(|Limits(low, high)| [low, high]).collect();
         limits.extend(boxes);
@@ -391,7 +397,7 @@ mod tests {
         assert_eq!(image.design.coupler_y, Some(Limits(-4.0, -2.0)));
         assert_eq!(image.design.b, Some(Limits(4.5, 4.5)));
         // (x, y) goes to (y, x) twice as large.
-        assert_eq!(image.require.pivots_in, Some([-5.0, -7.0, 8.0, 6.5]));
+        assert_eq!(image.require.pivots_in, Some(Region::Box([-5.0, -7.0, 8.0, 6.5])));
         assert_eq!(image.design.crank_pivot.map(|[x, _]| x), Some(Limits(1.0, 1.0)));
         assert_eq!(image.require.direction, DirectionPolicy::Cw);
         let reversed = image.renumbered(Numbering { first: 3, reversed: true });

@@ -41,7 +41,10 @@ impl ProblemSpec {
                 *limits = Limits(limits.0 + by, limits.1 + by);
             }
         }
-        for b in [&mut spec.require.pivots_in, &mut spec.require.footprint_in].into_iter().flatten() {
+        if let Some(region) = &mut spec.require.pivots_in {
+            region.points_mut().zip(by.iter().cycle()).for_each(|(x, by)| *x += by);
+        }
+        if let Some(b) = &mut spec.require.footprint_in {
             *b = [b[0] + by[0], b[1] + by[1], b[2] + by[0], b[3] + by[1]];
         }
         spec

@@ -5,6 +5,7 @@
 
 use crate::mechanism::MAX_MAGNITUDE;
 use crate::task::limits::Limits;
+use crate::task::region::Region;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -215,6 +216,81 @@ impl<'de> Deserialize<'de> for Corners {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         list_of(from, "a box [xmin, ymin, xmax, ymax]")
             .map(|corners: [Number; 4]| Corners(corners.map(|n| n.0)))
+    }
+}
+
+/// An item of a region: a number of a box, or a corner of a polygon.
+enum NumberOrCorner {
+    Number(f64),
+    Corner([f64; 2]),
+}
+
+impl<'de> Deserialize<'de> for NumberOrCorner {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ItemVisitor;
+        impl<'de> Visitor<'de> for ItemVisitor {
+            type Value = NumberOrCorner;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number of a box, or a corner [x, y] of a polygon")
+            }
+            visit_numbers!(NumberOrCorner::Number);
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<NumberOrCorner, A::Error> {
+                let corner: [Number; 2] = exactly(seq, "a corner [x, y]")?;
+                Ok(NumberOrCorner::Corner(corner.map(|n| n.0)))
+            }
+        }
+        deserializer.deserialize_any(ItemVisitor)
+    }
+}
+
+/// A region: a box by four numbers, or a polygon by its corners.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RegionNumbers(pub Region);
+
+impl<'de> Deserialize<'de> for RegionNumbers {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct RegionVisitor;
+        const EXPECTED: &str = "a box [xmin, ymin, xmax, ymax] or a polygon [[x, y], ...]";
+        impl<'de> Visitor<'de> for RegionVisitor {
+            type Value = RegionNumbers;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(EXPECTED)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<RegionNumbers, A::Error> {
+                let (mut corners, mut numbers) = (Vec::new(), Vec::new());
+                while let Some(item) = seq.next_element::<NumberOrCorner>()? {
+                    match item {
+                        NumberOrCorner::Corner(corner) => corners.push(corner),
+                        NumberOrCorner::Number(number) => numbers.push(number),
+                    }
+                }
+                let count = corners.len() + numbers.len();
+                match (<[f64; 4]>::try_from(numbers), corners.is_empty()) {
+                    (Ok(numbers), true) => Ok(RegionNumbers(Region::Box(numbers))),
+                    (Err(numbers), false) if numbers.is_empty() => {
+                        Ok(RegionNumbers(Region::Polygon(corners)))
+                    }
+                    _ => Err(de::Error::custom(format_args!("expected {EXPECTED}, found a list of {count}"))),
+                }
+            }
+        }
+        from.deserialize_any(RegionVisitor)
+    }
+}
+
+impl JsonSchema for RegionNumbers {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "RegionNumbers".into()
+    }
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({"anyOf": [
+            {"type": "array", "items": {"type": "number"}, "minItems": 4, "maxItems": 4},
+            {"type": "array", "minItems": 3, "items":
+                {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}}
+        ]})
     }
 }
 

@@ -4,6 +4,7 @@ use super::messages::{Ask, Known};
 use crate::files::diagnostic::Diagnostic;
 use crate::files::problem_file::{self, ProblemFile};
 use crate::mechanism::MAX_MAGNITUDE;
+use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, ProblemSpec, RawPoints, RequireSpec, SolveSpec};
 use crate::task::{AngleOffset, Task, TaskError};
 use serde::Serialize;
@@ -294,7 +295,7 @@ impl Ask {
             transmission_deg_min: require.transmission_deg_min,
             transmission_over: require.transmission_over,
             link_ratio_max: Some(require.link_ratio_max),
-            pivots_in: require.pivots_in,
+            pivots_in: require.pivots_in.as_ref().and_then(Region::as_box),
             footprint_in: require.footprint_in,
             order: require.order,
             direction: require.direction,

@@ -5,6 +5,7 @@ use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::linkage_file::{no_triangle, triangle_remedy};
 use crate::files::toml_text::TomlText;
 use crate::mechanism::FLAT_TOLERANCE;
+use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, Limits, RequireSpec};
 
 /// Two quantities that should agree may differ by this part of their scale: a person types few digits.
@@ -139,7 +140,7 @@ pub(super) fn against_requirements(
     design: &DesignSpec,
     require: &RequireSpec,
 ) -> Checked<Option<Diagnostic>> {
-    if let Some([x0, y0, x1, y1]) = require.pivots_in {
+    if let Some([x0, y0, x1, y1]) = require.pivots_in.as_ref().map(Region::corners) {
         for (key, pivot) in [("A", design.crank_pivot), ("B", design.follower_pivot)] {
             let Some([x, y]) = pivot else { continue };
             if x.0 > x1 || x.1 < x0 || y.0 > y1 || y.1 < y0 {

@@ -2,6 +2,7 @@
 
 use super::{Definition, Limit, Refusal, RequireSpec};
 use crate::mechanism::{Complex, MAX_MAGNITUDE};
+use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, Limits, ProblemSpec};
 use crate::task::{Task, Timing};
 
@@ -38,7 +39,7 @@ impl RequireSpec {
             && task.body().is_none()
             && self.extent_max.is_none()
             && !design.bounds_a_length()
-            && are_in_reach(design, self.pivots_in, task, longest);
+            && are_in_reach(design, self.pivots_in.as_ref().map(Region::corners), task, longest);
         applies.then_some(longest)
     }
 }

@@ -27,8 +27,9 @@ pub use longest_max::DEFAULT_LONGEST;
 pub use transmission::TransmissionOver;
 
 use crate::mechanism::LinkageType;
+use crate::task::region::Region;
 use crate::task::spec::{ClosingPolicy, DirectionPolicy, OnePolicy, OrderPolicy, ProblemSpec, TimingSpec};
-use crate::task::values::{Corners, LengthOrAny, Number, OneOrMore};
+use crate::task::values::{Corners, LengthOrAny, Number, OneOrMore, RegionNumbers};
 use crate::task::{Defect, Problem};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -264,8 +265,8 @@ pub(crate) struct RawRequire {
     pub transmission_over: Option<TransmissionOver>,
     /// The longest over the shortest of ground, a, b, c at most; where silent, 20.
     pub link_ratio_max: Option<Number>,
-    /// The box [xmin, ymin, xmax, ymax] that must hold both fixed pivots.
-    pub pivots_in: Option<Corners>,
+    /// The box [xmin, ymin, xmax, ymax] or the polygon [[x, y], ...] that must hold both fixed pivots.
+    pub pivots_in: Option<RegionNumbers>,
     /// The box [xmin, ymin, xmax, ymax] that must hold every joint and P over the motion used.
     pub footprint_in: Option<Corners>,
     /// The greatest diagonal of the box of every joint and P over the motion used, wherever it lies; where silent, any.
@@ -304,9 +305,9 @@ pub struct RequireSpec {
     pub transmission_over: Option<TransmissionOver>,
     /// Longest over shortest of ground, a, b, c.
     pub link_ratio_max: f64,
-    /// [xmin, ymin, xmax, ymax] that holds both fixed pivots.
+    /// [xmin, ymin, xmax, ymax] or a polygon [[x, y], ...] that holds both fixed pivots.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pivots_in: Option<[f64; 4]>,
+    pub pivots_in: Option<Region>,
     /// [xmin, ymin, xmax, ymax] that holds every joint and P over the motion used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub footprint_in: Option<[f64; 4]>,
@@ -360,7 +361,7 @@ impl From<RawRequire> for RequireSpec {
             transmission_deg_min: number(raw.transmission_deg_min),
             transmission_over: raw.transmission_over,
             link_ratio_max: number(raw.link_ratio_max).unwrap_or(DEFAULT_LINK_RATIO),
-            pivots_in: corners(raw.pivots_in),
+            pivots_in: raw.pivots_in.map(|region| region.0),
             footprint_in: corners(raw.footprint_in),
             extent_max: number(raw.extent_max),
             longest_max: raw.longest_max.and_then(LengthOrAny::length),

@@ -8,6 +8,7 @@ use crate::common::{bytes, run_on};
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::mechanism::LinkageType;
 use linkwright::internals::record::Candidate;
+use linkwright::internals::task::region::Region;
 use linkwright::internals::task::spec::{
     DirectionPolicy, Limits, OnePolicy, OrderPolicy, ProblemSpec, TransmissionOver,
 };
@@ -114,7 +115,7 @@ fn the_plain_checks_see_what_is_wrong() {
         }),
         ("a pivot outside its box", |spec, c| {
             let a = c.linkage.crank_pivot();
-            spec.require.pivots_in = Some([a.re + beyond(a.re), -1e12, 1e12, 1e12]);
+            spec.require.pivots_in = Some(Region::Box([a.re + beyond(a.re), -1e12, 1e12, 1e12]));
             true
         }),
         ("a joint outside the footprint", |spec, c| {

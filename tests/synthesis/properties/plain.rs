@@ -200,7 +200,7 @@ impl Look<'_> {
         {
             self.within(name, value, limits.map(|Limits(low, high)| Limits(low - slack, high + slack)));
         }
-        if let Some(b_) = self.spec.require.pivots_in {
+        if let Some(b_) = self.spec.require.pivots_in.as_ref().and_then(|region| region.as_box()) {
             self.inside("A in pivots_in", a, b_);
             self.inside("B in pivots_in", b, b_);
         }
