@@ -4,16 +4,16 @@ use crate::app::inputs::{Chosen, Given, Run};
 use crate::files::diagnostic::escaped;
 use crate::files::linkage_file::LinkageFile;
 use crate::files::problem_file::ProblemFile;
-use crate::judge::assess::assess;
+use crate::judge::assess::{assess, assess_again};
 use crate::judge::figures::extent;
 use crate::judge::verify::verify_candidate;
 use crate::mechanism::Unit;
-use crate::mechanism::{AssemblyMode, FourBar, LinkageError};
+use crate::mechanism::{FourBar, LinkageError};
 use crate::record::Candidate;
 use crate::record::digest::digest;
 use crate::report::certificate::headline;
 use crate::report::compare::{
-    Comparison, Entry, LeftOut, SortKey, compare, in_one_unit, same_points, unit_remarks,
+    Comparison, Entry, LeftOut, SortKey, compare, in_one_unit, same_body, same_points, unit_remarks,
 };
 use crate::synthesis::nearest::nearest_positions;
 use crate::task::Problem;
@@ -50,8 +50,8 @@ pub enum NotCompared {
 enum NotMeasured {
     #[error(transparent)]
     Linkage(#[from] LinkageError),
-    #[error("it cannot be assembled at every point of {0}")]
-    NotAssembled(String),
+    #[error("it cannot be assembled at every {noun} of {name}")]
+    NotAssembled { name: String, noun: &'static str },
 }
 
 /// The target that errors are measured against, with the problem that it belongs to.
@@ -87,7 +87,10 @@ impl Target {
     fn is(&self, other: &Target) -> bool {
         let (one, other_path) = (&self.problem.spec().task, &other.problem.spec().task);
         let one_unit = self.unit.zip(other.unit).is_none_or(|(one, other)| one == other);
-        one_unit && same_points(&one.points, &other_path.points) && one.timing == other_path.timing
+        one_unit
+            && same_points(&one.points, &other_path.points)
+            && same_body(one.body.as_ref(), other_path.body.as_ref())
+            && one.timing == other_path.timing
     }
 
     fn entry(&self, label: String, candidate: Candidate, unit: Option<Unit>, of_run: bool) -> Entry {
@@ -98,6 +101,7 @@ impl Target {
             candidate,
             target_name: self.name.clone(),
             target: path.points.clone(),
+            body: path.body.clone(),
             unit: self.unit.or(unit),
             measure: self.problem.spec().measure(),
             of_run,
@@ -111,13 +115,17 @@ impl Target {
         let linkage = linkage.scaled(factor)?;
         nearest_positions(&self.problem, &linkage)
             .and_then(|(crank_deg, assemblies)| assess(&self.problem, &linkage, &crank_deg, &assemblies))
-            .ok_or_else(|| NotMeasured::NotAssembled(self.name.clone()))
+            .ok_or_else(|| NotMeasured::NotAssembled {
+                name: self.name.clone(),
+                noun: self.problem.spec().task.noun(),
+            })
     }
 
-    fn at(&self, linkage: &FourBar, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Option<Candidate> {
+    /// Returns a candidate judged at its own positions and in its own frame.
+    fn at(&self, candidate: &Candidate) -> Option<Candidate> {
         let n = self.problem.task().len();
-        let has_all = crank_deg.len() == n && t1_at.len() == n;
-        has_all.then(|| assess(&self.problem, linkage, crank_deg, t1_at)).flatten()
+        let has_all = candidate.crank_deg.len() == n && candidate.t1_at.len() == n;
+        has_all.then(|| assess_again(&self.problem, candidate)).flatten()
     }
 }
 
@@ -262,8 +270,7 @@ impl Measured {
             // Checked a moment ago. If a verdict depends on rounding, the recorded one is kept.
             Ok(recorded.clone())
         } else {
-            let there =
-                same.then(|| on.at(&recorded.linkage, &recorded.crank_deg, &recorded.t1_at)).flatten();
+            let there = same.then(|| on.at(recorded)).flatten();
             there.map_or_else(|| on.nearest(&recorded.linkage, own.unit), Ok)
         };
         let entry = measured

@@ -94,11 +94,11 @@ impl Demand {
         }
     }
 
-    /// Returns the key in the problem file.
-    pub fn key(self) -> &'static str {
+    /// Returns the key in the file of a problem.
+    pub fn key_in(self, spec: &ProblemSpec) -> String {
         match self {
-            Demand::Require(kind) => kind.definition().key,
-            Demand::Design(key) => key.key(),
+            Demand::Require(kind) => kind.key_in(spec),
+            Demand::Design(key) => key.key().to_owned(),
         }
     }
 
@@ -295,7 +295,7 @@ pub fn design_limits(design: &DesignSpec, row: &str) -> Option<Limits> {
 pub fn changes(problem: &Problem, loosened: &ProblemSpec, demands: &[Demand]) -> Option<Vec<Change>> {
     let spec = problem.spec();
     let change = |demand: Demand| {
-        Some(Change { key: demand.key().into(), from: demand.typed(spec)?, to: demand.typed(loosened)? })
+        Some(Change { key: demand.key_in(spec), from: demand.typed(spec)?, to: demand.typed(loosened)? })
     };
     let mut keys = demands.to_vec();
     let mut pin = |key: DesignKey| {

@@ -50,8 +50,9 @@ pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
         let [least, greatest] = least_and_greatest(candidate.crank_deg.iter().copied());
         let swept = greatest - least;
         let text = format!(
-            "the crank goes to and fro over {} deg: the motion returns to its first point back through all others",
-            shown(swept)
+            "the crank goes to and fro over {} deg: the motion returns to its first {} back through all others",
+            shown(swept),
+            problem.spec().task.noun()
         );
         push(WarningKind::ToAndFro, "require.closing", swept, 360.0, text);
     }
@@ -94,7 +95,7 @@ fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&
             }
         }
         (Figure::Number(value), Figure::Number(limit))
-            if name != RequirementKind::Tolerance.name() && on(*value, *limit) =>
+            if !RequirementKind::names_tolerance(name) && on(*value, *limit) =>
         {
             each(name, "", *value, *limit);
         }

@@ -72,8 +72,9 @@ fn buildable(record: &Record, candidate: &Candidate) -> String {
     let first = record.candidates.first();
     let limits_only = first.is_some_and(|c| c.warnings.iter().all(|w| w.kind == WarningKind::OnBound));
     let label = if limits_only { "buildable, on no limit" } else { "buildable" };
+    let angle_error = words::angle_errors(candidate).map_or(String::new(), |said| format!(", {said}"));
     let mut text = format!(
-        "{label} ({place}): sum of sq {}, rms {}{}, {}, worst transmission angle {} deg, ratio {}",
+        "{label} ({place}): sum of sq {}, rms {}{}{angle_error}, {}, worst transmission angle {} deg, ratio {}",
         significant(candidate.error.sum_sq, 6),
         significant(candidate.error.rms, 4),
         words::unit_suffix(record),

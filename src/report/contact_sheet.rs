@@ -115,8 +115,11 @@ fn cell(canvas: &mut Canvas, record: &Record, candidate: &Candidate, layout: &La
     thumbnail(canvas, record, candidate, Area { height: layout.drawing, ..frame });
 
     let (rms, unit) = (significant(candidate.error.rms, 4), words::unit_suffix(record));
-    let rms = format!("#{}   rms {rms}{unit}", candidate.rank);
-    let worst = format!("worst angle {}°", significant(candidate.transmission_deg.worst, 3));
+    let angle = candidate.error.angle.map_or(String::new(), |a| format!(", {}°", significant(a.rms_deg, 3)));
+    let rms = format!("#{}   rms {rms}{unit}{angle}", candidate.rank);
+    // Beside an error of an angle "worst angle" would be taken for one.
+    let worst = if angle.is_empty() { "worst angle" } else { "transmission" };
+    let worst = format!("{worst} {}°", significant(candidate.transmission_deg.worst, 3));
     let verdict = shortened(&words::verdict(record, candidate), 20);
     let colour = if candidate.accepted { palette::MUTED } else { palette::TARGET_TEXT };
     let kind = candidate.linkage_type.name();

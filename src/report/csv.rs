@@ -1,11 +1,12 @@
 //! Tables for spreadsheets and scripts. Every number is the shortest text that reads back as the same double; a cell
 //! without a number is empty.
 
+use super::body;
 use super::scene::first_position;
 use super::text::{cell, exact, push_exact};
 use super::words;
 use crate::mechanism::four_bar::transmission::angle_opposite;
-use crate::mechanism::{CouplerCurve, FourBar, Joints};
+use crate::mechanism::{Complex, CouplerCurve, FourBar, Joints};
 use crate::record::{Candidate, Member, Record};
 use crate::task::Defect;
 
@@ -35,6 +36,14 @@ const FIGURES: [Column<Candidate>; 19] = [
     ("ground", |c| exact(c.linkage.ground())),
 ];
 
+/// The figures that a candidate of a motion has beside those.
+pub(super) const OF_MOTION: [Column<Candidate>; 4] = [
+    ("frame_deg", |c| c.frame_deg.map_or(String::new(), exact)),
+    ("angle_rms_deg", |c| c.error.angle.map_or(String::new(), |angle| exact(angle.rms_deg))),
+    ("angle_max_deg", |c| c.error.angle.map_or(String::new(), |angle| exact(angle.max_deg))),
+    ("angle_max_at", |c| c.error.angle.map_or(String::new(), |angle| angle.max_at.to_string())),
+];
+
 /// The parameters of a linkage: coordinates, lengths and signs.
 pub(super) const PARAMETERS: [Column<FourBar, f64>; 11] = [
     ("Ax", |l| l.crank_pivot().re),
@@ -50,17 +59,23 @@ pub(super) const PARAMETERS: [Column<FourBar, f64>; 11] = [
     ("t2", |l| l.side().sign()),
 ];
 
-/// The header row of [`curve_csv`].
+/// The header row of [`curve_csv`]; the curve of a motion has a last column [`BODY_ANGLE`].
 pub const CURVE_COLUMNS: [&str; 9] =
     ["crank_deg", "t1", "Cx", "Cy", "Dx", "Dy", "Px", "Py", "transmission_deg"];
 
+/// The column with the angle of a motion's body, from -180 to 180 degrees.
+pub const BODY_ANGLE: &str = "angle_deg";
+
 /// Returns one row for each candidate: every figure and parameter, defects as `order:3 7;branch:2` (points from 0), and
-/// the names of the requirements that are not met.
+/// the names of the requirements that are not met. Those of a motion have the errors of the angle too.
 pub fn candidates_csv(record: &Record) -> String {
-    let head = names(&FIGURES).chain(names(&PARAMETERS)).chain(["defects", "unmet"]);
+    let of_motion: &[Column<Candidate>] =
+        if record.problem.resolved.task.body.is_some() { &OF_MOTION } else { &[] };
+    let head = names(&FIGURES).chain(names(of_motion)).chain(names(&PARAMETERS)).chain(["defects", "unmet"]);
     let rows = record.candidates.iter().map(|c| {
         let defects: Vec<String> = c.defects.iter().map(defect).collect();
         let mut row = cells(&FIGURES, c);
+        row.extend(cells(of_motion, c));
         row.extend(parameters(&c.linkage));
         row.extend([defects.join(";"), cell(&words::unmet(record, c).join(";"))]);
         row
@@ -132,10 +147,19 @@ pub fn curve_csv(record: &Record, index: usize) -> String {
 pub fn candidate_curve_csv(candidate: &Candidate) -> String {
     // There are only numbers, which need no quotes.
     let mut text = CURVE_COLUMNS.join(",");
+    if candidate.frame_deg.is_some() {
+        text.push_str(&format!(",{BODY_ANGLE}"));
+    }
     text.push('\n');
     for row in curve(candidate) {
         for number in row {
             push_exact(&mut text, number);
+            text.push(',');
+        }
+        if let Some(frame_deg) = candidate.frame_deg {
+            let [.., cx, cy, dx, dy, _, _, _] = row;
+            let coupler = Complex::new(dx - cx, dy - cy);
+            push_exact(&mut text, body::generated(coupler, frame_deg).to_degrees());
             text.push(',');
         }
         text.pop();

@@ -43,7 +43,7 @@ fn cell(canvas: &mut Canvas, record: &Record, linkage: &ExactLinkage, layout: &L
     let (frame, number) = (layout.frame(index), (index + 1).to_string());
     let drawing = Area { height: layout.drawing, ..frame };
     let positions = positions_at(&linkage.crank_deg, &linkage.t1_at);
-    let scene = Scene::of(record, &linkage.linkage, &positions, SAMPLES);
+    let scene = Scene::of(record, &linkage.linkage, &positions, None, SAMPLES);
     let view = View::fit(&seen(&scene), drawing.shrunk(12.0));
     let Area { x, y, width, height } = drawing;
     canvas.raw(&format!(

@@ -1,5 +1,6 @@
 //! The drawing of a scene: curve, linkage, target and labels.
 
+use super::bodies;
 use super::canvas::{
     Canvas, ROUND_CORNERS, ROUND_ENDS, Spot, View, filled, font, haloed, outline, palette, px, stroke,
     weighted,
@@ -61,6 +62,7 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Deta
     if let Some([a, b, c, d, _]) = joints {
         bars(canvas, [a, b, c, d], palette::BAR_EDGE, detail.weight);
     }
+    bodies::draw(canvas, scene, view, detail.target_weight);
     targets(canvas, &marks, detail);
     if let Some(joints) = joints {
         point_mark(canvas, joints[4], detail.weight);

@@ -61,6 +61,8 @@ pub mod analysis_sheets;
 pub mod analysis_text;
 pub mod batch_csv;
 mod beside;
+mod bodies;
+mod body;
 mod canvas;
 pub mod certificate;
 pub mod chain_sheet;

@@ -69,8 +69,9 @@ pub fn terminal_plot(record: &Record, index: usize, width: usize, height: usize,
     let count = (length / raster.unit_of_column()).round().max(1.0) as usize;
     let ruler = rule.repeat(count);
     out.push_str(&format!(
-        "{:INDENT$}{other} target{thinned}  {first} point 0{curve}  {ruler} {}{}\n",
+        "{:INDENT$}{other} target{thinned}  {first} {} 0{curve}  {ruler} {}{}\n",
         "",
+        record.problem.resolved.task.noun(),
         brief(length, 3),
         words::unit_suffix(record)
     ));

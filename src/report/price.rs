@@ -15,7 +15,9 @@ pub(super) fn costs(record: &Record) -> String {
     if best.costs.is_empty() {
         return String::new();
     }
-    let mut out = format!("\n  What the limits cost (#{})\n", best.rank);
+    let of_motion = record.problem.resolved.task.body.is_some();
+    let with_angles = if of_motion { "; angle errors times angle_weight are part of the rms" } else { "" };
+    let mut out = format!("\n  What the limits cost (#{}{with_angles})\n", best.rank);
     for (i, cost) in best.costs.iter().enumerate() {
         if best.costs[..i].iter().all(|other| other.name != cost.name) {
             out.push_str(&wrapped("    ", "      ", &sentence(record, best, &cost.name), COLUMNS));
@@ -24,10 +26,15 @@ pub(super) fn costs(record: &Record) -> String {
     out
 }
 
-/// Returns the error in which costs are stated: rms, weighted if the points are.
+/// Returns the error in which costs are stated: rms, weighted if the points are; in a motion with the errors of the
+/// angle as lengths.
 fn rms(record: &Record, candidate: &Candidate) -> f64 {
-    let weights = record.problem.resolved.task.weight.as_ref();
-    weights.map_or(candidate.error.rms, |w| (candidate.error.objective / w.iter().sum::<f64>()).sqrt())
+    let task = &record.problem.resolved.task;
+    let ones = || task.body.as_ref().map(|body| vec![1.0; body.angle_deg.len()]);
+    task.weight
+        .clone()
+        .or_else(ones)
+        .map_or(candidate.error.rms, |w| (candidate.error.objective / w.iter().sum::<f64>()).sqrt())
 }
 
 /// Returns the cost of an active limit: `costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
@@ -157,7 +164,7 @@ fn demand(record: &Record, key: &str) -> String {
     let from = |relaxation: &Relaxation| {
         relaxation.set.iter().find(|change| change.key == key).map(|change| change.from.clone())
     };
-    let required = RequirementKind::with_key(key).filter(|kind| *kind != RequirementKind::Tolerance);
+    let required = RequirementKind::with_key(key).filter(|kind| !kind.is_tolerance());
     let limit = required.and_then(|kind| kind.only_limit(&record.problem.resolved));
     let value = limit.map(TypedValue::Number).or_else(|| record.relaxations.iter().find_map(from));
     match value {

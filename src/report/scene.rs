@@ -1,7 +1,9 @@
 //! The scene of a candidate's drawing: target points, the circuits used, and one position of the linkage.
 
+use super::body;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, Joints, MAX_MAGNITUDE, point};
 use crate::record::{Candidate, Record};
+use crate::task::spec::TaskSpec;
 use std::f64::consts::{PI, TAU};
 
 /// The number of samples of a circuit for a drawing: half a degree of the crank, far below a pixel.
@@ -13,6 +15,10 @@ pub(super) struct Target {
     pub(super) index: usize,
     pub(super) at: Complex,
     pub(super) reached: Option<Complex>,
+    /// The angle of the body there, in a motion, radians.
+    pub(super) angle: Option<f64>,
+    /// The angle that the body has instead.
+    pub(super) reached_angle: Option<f64>,
 }
 
 /// The linkage at one position.
@@ -37,27 +43,30 @@ pub(super) struct Scene {
 impl Scene {
     pub(super) fn new(record: &Record, candidate: Option<&Candidate>) -> Self {
         match candidate {
-            None => Scene { targets: targets(record, &|_| None), ..Scene::default() },
-            Some(candidate) => Scene::of(record, &candidate.linkage, &positions(candidate), SAMPLES),
+            None => Scene { targets: targets(record, None, &|_| None), ..Scene::default() },
+            Some(candidate) => {
+                Scene::of(record, &candidate.linkage, &positions(candidate), candidate.frame_deg, SAMPLES)
+            }
         }
     }
 
     /// Returns the scene of a linkage at crank angle (radians) and assembly at each point, with `samples` positions of
-    /// each circuit.
+    /// each circuit. The body of a motion lies at `frame_deg` from the direction C -> D.
     pub(super) fn of(
         record: &Record,
         linkage: &FourBar,
         positions: &[(f64, AssemblyMode)],
+        frame_deg: Option<f64>,
         samples: usize,
     ) -> Self {
         let reach = |j: usize| {
             let (angle, assembly) = *positions.get(j)?;
-            Some(linkage.position_with(angle, assembly).joints()?.coupler_point)
+            linkage.position_with(angle, assembly).joints()
         };
         let circuits = circuits_of(linkage, positions, samples);
         let pose = legible_pose(linkage, positions)
             .or_else(|| Some(Pose { target: None, joints: all_joints(linkage, circuits.first()?.first()?) }));
-        Scene { linkage: Some(*linkage), targets: targets(record, &reach), circuits, pose }
+        Scene { linkage: Some(*linkage), targets: targets(record, frame_deg, &reach), circuits, pose }
     }
 
     /// Returns the box of the target points and the coupler points that they are compared with.
@@ -82,11 +91,33 @@ impl Scene {
     }
 }
 
-/// Returns the target points that can be drawn, each with the coupler point's place at it.
-fn targets(record: &Record, reached: &dyn Fn(usize) -> Option<Complex>) -> Vec<Target> {
-    let points = record.problem.resolved.task.points.iter().enumerate();
-    let usable = points.filter(|(_, p)| p.iter().all(|x| x.abs() <= MAX_MAGNITUDE));
-    usable.map(|(index, p)| Target { index, at: point(*p), reached: reached(index) }).collect()
+/// Returns the target points that can be drawn, each with the coupler point's place at it, and in a motion with the body's
+/// angles.
+fn targets(
+    record: &Record,
+    frame_deg: Option<f64>,
+    reached: &dyn Fn(usize) -> Option<Joints>,
+) -> Vec<Target> {
+    let TaskSpec { points, body, .. } = &record.problem.resolved.task;
+    let usable = points.iter().enumerate().filter(|(_, p)| p.iter().all(|x| x.abs() <= MAX_MAGNITUDE));
+    let target = |(index, p): (usize, &[f64; 2])| {
+        let joints = reached(index);
+        let wanted = body.as_ref().and_then(|body| *body.angle_deg.get(index)?);
+        let generated = |joints: Joints| {
+            Some(body::generated(
+                joints.follower_pin - joints.crank_pin,
+                frame_deg.filter(|_| wanted.is_some())?,
+            ))
+        };
+        Target {
+            index,
+            at: point(*p),
+            reached: joints.map(|joints| joints.coupler_point),
+            angle: wanted.map(f64::to_radians),
+            reached_angle: joints.and_then(generated),
+        }
+    };
+    usable.map(target).collect()
 }
 
 /// Returns the crank angle (radians) and assembly at each point that has both.

@@ -35,14 +35,18 @@ pub fn snap_text(
         _ => String::new(),
     };
     let cost = format!("The rms error goes from {was} to {is}{unit}{times}.");
+    let target = if after.frame_deg.is_some() { "pose" } else { "point" };
     let plain = match &snapped.nearest {
         Some(c) if c.accepted == after.accepted => format!(
             "Each length to its nearest stock size at once would give {}.",
             significant(c.error.rms, 4)
         ),
         Some(_) => "Each length to its nearest stock size at once would not be acceptable.".to_owned(),
-        None => "Each length to its nearest stock size at once gives no linkage that reaches every point."
-            .to_owned(),
+        None => {
+            format!(
+                "Each length to its nearest stock size at once gives no linkage that reaches every {target}."
+            )
+        }
     };
     let fits = format!("{} combinations were fitted.", grouped(snapped.fits));
     out.push_str(&wrapped("\n  ", "  ", &format!("{cost} {plain} {fits}"), COLUMNS));
@@ -104,20 +108,31 @@ fn rounded(value: f64) -> f64 {
 
 fn figures(before: &Candidate, snapped: &Snapped, colour: Colour) -> String {
     let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
+    let has_angles = before.error.angle.is_some();
     let mut grid = Grid::new(&[
         (Left, &[""]),
-        (Right, &["rms", "max", "mu worst"]),
+        (
+            Right,
+            if has_angles {
+                &["rms", "max", "angle rms", "angle max", "mu worst"]
+            } else {
+                &["rms", "max", "mu worst"]
+            },
+        ),
         (Left, &["accepted"]),
         (Right, &keys),
     ]);
     let mut row = |name: String, c: &Candidate, stock: bool| {
-        let mut cells = vec![
-            plain(name),
-            plain(significant(c.error.rms, 4)),
-            plain(significant(c.error.max, 4)),
+        let mut cells =
+            vec![plain(name), plain(significant(c.error.rms, 4)), plain(significant(c.error.max, 4))];
+        if has_angles {
+            let angle = c.error.angle.as_ref().map_or([f64::NAN; 2], |angle| [angle.rms_deg, angle.max_deg]);
+            cells.extend(angle.map(|degrees| plain(format!("{}°", significant(degrees, 4)))));
+        }
+        cells.extend([
             plain(format!("{}°", significant(c.transmission_deg.worst, 4))),
             verdict(if c.accepted { "yes" } else { "no" }, c.accepted),
-        ];
+        ]);
         for length in &snapped.lengths {
             let value = length.of(&c.linkage);
             cells.push(plain(if stock { exact(rounded(value)) } else { significant(value, DIGITS) }));

@@ -2,6 +2,7 @@
 //! A target that is small beside its linkage has an enlarged view of its own.
 
 use super::beside;
+use super::bodies::Posed;
 use super::canvas::{
     Anchor, Area, Canvas, Frame, ROUND_ENDS, Spot, View, filled, font, outline, palette, stroke,
 };
@@ -58,7 +59,8 @@ pub fn drawing_svg(record: &Record, candidate: Option<&Candidate>) -> String {
 
     let footer = top + height + 26.0;
     canvas.scale_bar(Spot::new(MARGIN, footer), &view, 0.25 * main_width, &words::unit_suffix(record));
-    legend(&mut canvas, footer, candidate.is_some());
+    let is_motion = record.problem.resolved.task.body.is_some();
+    legend(&mut canvas, footer, candidate.is_some(), is_motion);
     let bottom = caption(&mut canvas, record, candidate, &scene, footer + 34.0);
     let description = candidate.map_or("the target alone".to_owned(), |c| figures(record, c).join("; "));
     canvas.document(WIDTH, bottom + 18.0, &format!("{title}, {}", standing(record, candidate)), &description)
@@ -127,17 +129,35 @@ fn enlarged(
 }
 
 /// Draws the legend of the marks, from the right.
-fn legend(canvas: &mut Canvas, y: f64, with_curve: bool) {
+fn legend(canvas: &mut Canvas, y: f64, with_curve: bool, of_motion: bool) {
     let text = font(12, palette::INK);
     let mut x = WIDTH - MARGIN;
     if with_curve {
-        x -= text_width("coupler curve", 12.0);
-        canvas.text(Spot::new(x, y), Anchor::Start, &text, "coupler curve");
+        let curve = if of_motion { "curve of the body's point" } else { "coupler curve" };
+        x -= text_width(curve, 12.0);
+        canvas.text(Spot::new(x, y), Anchor::Start, &text, curve);
         let line = stroke(palette::CURVE, 2.4) + ROUND_ENDS;
         canvas.line(Spot::new(x - 30.0, y - 4.0), Spot::new(x - 8.0, y - 4.0), &line);
         x -= 50.0;
     }
-    for (label, fill, radius) in [("target", "none", 4.6), ("target point 0", palette::TARGET, 5.4)] {
+    if of_motion {
+        let mut frame = |label: &str, wanted: bool| {
+            x -= text_width(label, 12.0);
+            canvas.text(Spot::new(x, y), Anchor::Start, &text, label);
+            let posed = Posed { at: Spot::new(x - 28.0, y - 2.0), angle: 0.0 };
+            match wanted {
+                true => posed.outlined(canvas, 20.0, palette::TARGET, 1.0),
+                false => posed.filled(canvas, 20.0, palette::CURVE),
+            }
+            x -= 52.0;
+        };
+        if with_curve {
+            frame("body generated", false);
+        }
+        frame("body wanted", true);
+    }
+    let first = if of_motion { "target pose 0" } else { "target point 0" };
+    for (label, fill, radius) in [("target", "none", 4.6), (first, palette::TARGET, 5.4)] {
         x -= text_width(label, 12.0);
         canvas.text(Spot::new(x, y), Anchor::Start, &text, label);
         let mark = filled(fill, palette::TARGET, 1.7);
@@ -148,15 +168,16 @@ fn legend(canvas: &mut Canvas, y: f64, with_curve: bool) {
 
 /// Returns the figures in words: errors, then the linkage.
 fn figures(record: &Record, candidate: &Candidate) -> [String; 2] {
-    let unit = words::unit_suffix(record);
+    let (unit, noun) = (words::unit_suffix(record), record.problem.resolved.task.noun());
     let (error, transmission) = (&candidate.error, &candidate.transmission_deg);
+    let more = words::angle_errors(candidate)
+        .unwrap_or_else(|| format!("rms to the curve {}{unit}", significant(error.to_curve.rms, 4)));
     [
         format!(
-            "rms error {}{unit}, largest {}{unit} at point {}, rms to the curve {}{unit}",
+            "rms error {}{unit}, largest {}{unit} at {noun} {}, {more}",
             significant(error.rms, 4),
             significant(error.max, 4),
             error.max_at,
-            significant(error.to_curve.rms, 4)
         ),
         format!(
             "{}, worst transmission angle {}° ({}), link ratio {}, {}",
@@ -182,8 +203,9 @@ fn caption(
 ) -> f64 {
     let mut lines = candidate.map_or(Vec::new(), |c| figures(record, c).to_vec());
     if let Some(pose) = &scene.pose {
-        let drawn = pose.target.map_or("drawn at no target point: the loop is open there".to_owned(), |j| {
-            format!("drawn at point {j}")
+        let noun = record.problem.resolved.task.noun();
+        let drawn = pose.target.map_or(format!("drawn at no target {noun}: the loop is open there"), |j| {
+            format!("drawn at {noun} {j}")
         });
         if let Some(last) = lines.last_mut() {
             last.push_str(&format!("; {drawn}"));

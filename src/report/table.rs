@@ -4,13 +4,13 @@ use super::beside;
 use super::csv::parameters;
 use super::grid::Align::{Left, Right};
 use super::grid::{Cell, Colour, Column, Grid, Ink, plain, verdict};
-use super::text::{COLUMNS, brief, clean, grouped, indented, shortened, significant, wrapped};
+use super::text::{COLUMNS, NO_NUMBER, brief, clean, grouped, indented, shortened, significant, wrapped};
 use super::{price, words};
 use crate::mechanism::FourBar;
 use crate::mechanism::Unit;
-use crate::record::{Candidate, ErrorRecord, Record};
+use crate::record::{AngleErrorRecord, Candidate, ErrorRecord, Record};
 use crate::task::Defect;
-use crate::task::spec::Measure;
+use crate::task::spec::{Measure, TaskSpec};
 
 /// The largest number of candidates whose distances from the given points are stated.
 const RAW_NAMED: usize = 3;
@@ -23,7 +23,8 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
     if record.candidates.is_empty() {
         out.push_str("  No candidate was found.\n");
     } else {
-        out.push_str(&rows(record, colour));
+        let of_motion = record.problem.resolved.task.body.is_some();
+        out.push_str(&if of_motion { rows_of_motion(record, colour) } else { rows(record, colour) });
         out.push_str(&notes(record));
         out.push_str(&beside::lines(record));
         out.push_str(&best(record));
@@ -53,7 +54,8 @@ pub(super) fn heading(record: &Record, colour: Colour) -> String {
 /// Returns a text such as `18 points, size 1.082 m, prescribed timing, offset free, closed`.
 pub(super) fn facts(record: &Record) -> String {
     let path = &record.problem.resolved.task;
-    let mut facts = vec![count(path.points.len(), "point")];
+    let mut facts = vec![count(path.points.len(), path.noun())];
+    facts.extend(without_angle(path));
     if let Ok(task) = path.to_task() {
         facts.push(format!("size {}{}", brief(task.size(), 4), words::unit_suffix(record)));
     }
@@ -71,13 +73,20 @@ pub(super) fn facts(record: &Record) -> String {
     facts.join(", ")
 }
 
+/// Returns the number of the poses of a motion that ask for the place alone, if there are any: `9 of them without an
+/// angle`.
+fn without_angle(task: &TaskSpec) -> Option<String> {
+    let without = task.body.as_ref()?.angle_deg.iter().filter(|angle| angle.is_none()).count();
+    (without > 0).then(|| format!("{} of them without an angle", grouped(without as u64)))
+}
+
 pub(super) fn count(n: usize, noun: &str) -> String {
     format!("{} {noun}{}", grouped(n as u64), if n == 1 { "" } else { "s" })
 }
 
 fn rows(record: &Record, colour: Colour) -> String {
     let measure = record.problem.resolved.measure();
-    let ranks = words::minimised(measure);
+    let ranks = words::minimised_in(record);
     // Beside the largest part of the tolerances the table shows that part's point, which need not be that of the
     // largest error.
     let parts = measure == Measure::LargestPart;
@@ -94,7 +103,9 @@ fn rows(record: &Record, colour: Colour) -> String {
         &record.candidates,
         &[
             (Right, "#", &|c| (c.rank.to_string(), Ink::Strong)),
-            (Right, ranks.map_or("sum of sq", |(head, _)| head), &|c| plain(significant(objective(c), 6))),
+            (Right, ranks.as_ref().map_or("sum of sq", |(head, _)| head), &|c| {
+                plain(significant(objective(c), 6))
+            }),
             first,
             second,
             third,
@@ -103,6 +114,39 @@ fn rows(record: &Record, colour: Colour) -> String {
             (Right, "transmission", &|c| plain(transmission(c))),
             (Right, "ratio", &|c| plain(significant(c.link_ratio, 3))),
             (Left, "verdict", &|c| verdict(shortened(&words::verdict(record, c), 24), c.accepted)),
+        ],
+    );
+    grid.render(colour)
+}
+
+/// The columns of a motion's table: beside the errors of the place, those of the angle.
+fn rows_of_motion(record: &Record, colour: Colour) -> String {
+    let head = words::minimised_in(record).map_or("objective", |(head, _)| head);
+    let transmission = |c: &Candidate| {
+        let (worst, over) = (c.transmission_deg.worst, words::over(c.transmission_deg.over));
+        format!("{}° {over:<5}", significant(worst, 3))
+    };
+    let angle = |c: &Candidate, of: fn(&AngleErrorRecord) -> f64| {
+        plain(c.error.angle.as_ref().map_or(NO_NUMBER.to_owned(), |a| format!("{}°", significant(of(a), 3))))
+    };
+    let angle_at = |c: &Candidate| {
+        plain(c.error.angle.as_ref().map_or(NO_NUMBER.to_owned(), |angle| angle.max_at.to_string()))
+    };
+    let grid = Grid::of(
+        &record.candidates,
+        &[
+            (Right, "#", &|c| (c.rank.to_string(), Ink::Strong)),
+            (Right, head, &|c| plain(significant(c.error.objective, 5))),
+            (Right, "rms", &|c| plain(significant(c.error.rms, 4))),
+            (Right, "max", &|c| plain(significant(c.error.max, 4))),
+            (Right, "at", &|c| plain(c.error.max_at.to_string())),
+            (Right, "angle", &|c| angle(c, |angle| angle.rms_deg)),
+            (Right, "max", &|c| angle(c, |angle| angle.max_deg)),
+            (Right, "at", &angle_at),
+            (Left, "type", &|c| plain(c.linkage_type.name())),
+            (Right, "transm.", &|c| plain(transmission(c))),
+            (Right, "ratio", &|c| plain(significant(c.link_ratio, 3))),
+            (Left, "verdict", &|c| verdict(shortened(&words::verdict(record, c), 18), c.accepted)),
         ],
     );
     grid.render(colour)
@@ -123,19 +167,8 @@ fn notes(record: &Record) -> String {
         format!(" Lengths in {}.", if unit == Unit::In { "inches" } else { unit.label() })
     });
     let mut out = String::from("\n");
-    let measure = record.problem.resolved.measure();
-    let first = words::minimised(measure).map_or(String::new(), |(_, sentence)| format!("{sentence} "));
-    let max = if measure == Measure::LargestPart {
-        "at: at which point (from 0). max: the largest error."
-    } else {
-        "max: the largest error, at which point (from 0)."
-    };
-    let key = format!(
-        "{first}{max} to curve: rms distance to the whole coupler curve. \
-         transmission: the worst angle, from 0 to 90°, over the crank's full turn (cycle) or between the points \
-         (used). ratio: longest to shortest link.{unit}"
-    );
-    out.push_str(&indented(&key));
+    let first = words::minimised_in(record).map_or(String::new(), |(_, sentence)| format!("{sentence} "));
+    out.push_str(&indented(&format!("{first}{} ratio: longest to shortest link.{unit}", columns(record))));
     let more = [words::tolerances(record), against_raw(record), words::fewer(record)];
     for sentence in more.into_iter().flatten() {
         out.push('\n');
@@ -159,6 +192,22 @@ fn notes(record: &Record) -> String {
         out.push_str(&wrapped("    ", "      ", &format!("{lead}: {text}"), COLUMNS));
     }
     out
+}
+
+/// Returns the meaning of the columns but the objective and the ratio.
+fn columns(record: &Record) -> &'static str {
+    if record.problem.resolved.task.body.is_some() {
+        return "rms, max: errors of the place, at which pose (from 0) the largest. angle, max: rms and largest error \
+                of the body's angle, degrees. transm.: the worst transmission angle, from 0 to 90°, over the crank's \
+                full turn (cycle) or between the poses (used).";
+    }
+    if record.problem.resolved.measure() == Measure::LargestPart {
+        "at: at which point (from 0). max: the largest error. to curve: rms distance to the whole coupler curve. \
+         transmission: the worst angle, from 0 to 90°, over the crank's full turn (cycle) or between the points (used)."
+    } else {
+        "max: the largest error, at which point (from 0). to curve: rms distance to the whole coupler curve. \
+         transmission: the worst angle, from 0 to 90°, over the crank's full turn (cycle) or between the points (used)."
+    }
 }
 
 /// Returns the distances of the curves from the points as they were given, before smoothing and resampling.
@@ -273,11 +322,18 @@ pub fn batch_summary(files: &[BatchRow<'_>], colour: Colour) -> String {
     let figure = |file: &BatchRow<'_>, of: fn(&ErrorRecord) -> f64, digits| {
         plain(file.best().map_or(String::new(), |error| significant(of(error), digits)))
     };
+    let kinds =
+        || files.iter().filter_map(|file| Some(file.outcome.ok()?.problem.resolved.task.body.is_some()));
+    let noun = match (kinds().any(|of_motion| of_motion), kinds().any(|of_motion| !of_motion)) {
+        (true, true) => "targets",
+        (true, false) => "poses",
+        (false, _) => "points",
+    };
     let grid = Grid::of(
         files,
         &[
             (Left, "problem", &|file| plain(shortened(&clean(file.name), 30))),
-            (Right, "points", &|file| ran(file, &|r| grouped(r.problem.resolved.task.points.len() as u64))),
+            (Right, noun, &|file| ran(file, &|r| grouped(r.problem.resolved.task.points.len() as u64))),
             (Right, "best sum of sq", &|file| figure(file, |e| e.sum_sq, 6)),
             (Right, "rms", &|file| figure(file, |e| e.rms, 4)),
             (Right, "max", &|file| figure(file, |e| e.max, 4)),

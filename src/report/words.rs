@@ -1,10 +1,11 @@
 //! Verdicts, requirements and endings in plain words.
 
+use super::body::{self, Part};
 use super::text::{brief, clean, exact, significant};
 use crate::mechanism::Unit;
 use crate::record::{Candidate, Figure, Pick, Reason, Record, Requirement};
 use crate::task::requirement::RequirementKind;
-use crate::task::spec::{Measure, TransmissionOver};
+use crate::task::spec::{BodySpec, Measure, TaskSpec, TransmissionOver};
 use crate::task::{AngleOffset, Defect};
 
 /// An objection: one reason why a candidate is not accepted.
@@ -21,18 +22,19 @@ pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objectio
     if candidate.accepted {
         return Vec::new();
     }
-    let of_defect = |d: &Defect| Objection { key: d.name().to_owned(), sentence: of_defect(d) };
+    let task = &record.problem.resolved.task;
+    let of_defect = |d: &Defect| Objection { key: d.name().to_owned(), sentence: of_defect(task, d) };
     let unmet = candidate.requirements.iter().filter(|r| !r.met);
     let mut list: Vec<Objection> = unmet
         .filter(|r| !forbidden(record, candidate).any(|defect| defect.name() == r.name))
         .map(|r| {
-            let pointed = if is_tolerance(r) { of_tolerance(record, candidate) } else { None };
+            let pointed = part_of(r).and_then(|part| of_tolerance(record, candidate, part));
             pointed.unwrap_or_else(|| of_requirement(r))
         })
         .collect();
     list.extend(forbidden(record, candidate).map(of_defect));
     if !candidate.requirements.iter().any(is_tolerance) {
-        list.extend(of_tolerance(record, candidate));
+        list.extend(Part::ALL.into_iter().filter_map(|part| of_tolerance(record, candidate, part)));
     }
     if list.is_empty() {
         list.push(Objection { key: "reason not recorded".into(), sentence: "reason not recorded".into() });
@@ -46,12 +48,22 @@ fn forbidden<'a>(record: &Record, candidate: &'a Candidate) -> impl Iterator<Ite
 }
 
 fn is_tolerance(requirement: &Requirement) -> bool {
-    requirement.name == RequirementKind::Tolerance.name()
+    part_of(requirement).is_some()
+}
+
+/// Returns the part of the error that a tolerance limits; `None` for any other requirement.
+fn part_of(requirement: &Requirement) -> Option<Part> {
+    Part::ALL.into_iter().find(|part| part.tolerance().name() == requirement.name)
+}
+
+/// Returns a text on the targets of a task: its word "point" is "pose" in a motion.
+pub(super) fn of_targets(task: &TaskSpec, text: &str) -> String {
+    if task.body.is_some() { text.replace("point", task.noun()) } else { text.to_owned() }
 }
 
 /// Returns a defect as a sentence part.
-pub(super) fn of_defect(defect: &Defect) -> String {
-    match defect {
+pub(super) fn of_defect(task: &TaskSpec, defect: &Defect) -> String {
+    let said = match defect {
         Defect::Order { .. } if defect.is_to_and_fro() => {
             "runs to and fro: back to point 0 only through all other points in reverse".to_owned()
         }
@@ -60,7 +72,8 @@ pub(super) fn of_defect(defect: &Defect) -> String {
         Defect::Circuit { at } => {
             format!("{} out of reach from point 0 without taking the linkage apart", points(at))
         }
-    }
+    };
+    of_targets(task, &said)
 }
 
 /// Returns a list of points such as `point 3`, `points 3, 7 and 9`, `points 1 to 17`, `points 0, 2, 5, 8, 11 and 4
@@ -118,9 +131,10 @@ pub(super) fn figure(figure: &Figure, number: fn(f64) -> String) -> String {
     }
 }
 
-/// A deviation: the error at a point, with the tolerance there.
+/// A deviation: the error at a target, with the tolerance there.
 struct Deviation {
     point: usize,
+    part: Part,
     error: f64,
     tolerance: f64,
 }
@@ -129,19 +143,27 @@ impl Deviation {
     /// Returns the deviation of a candidate that is the largest part of its tolerance, of equal ones the first; `None` if
     /// no tolerances were asked for.
     fn worst(record: &Record, candidate: &Candidate) -> Option<Deviation> {
-        let path = &record.problem.resolved.task;
-        let positions = candidate.crank_deg.iter().zip(&candidate.t1_at);
-        let points = path.points.iter().zip(path.tolerance.as_ref()?).zip(positions).enumerate();
-        let deviations = points.filter_map(|(point, ((target, tolerance), (angle, assembly)))| {
-            let joints = candidate.linkage.position_with(angle.to_radians(), *assembly).joints()?;
-            let error = (crate::mechanism::point(*target) - joints.coupler_point).norm();
-            Some(Deviation { point, error, tolerance: *tolerance })
+        let each = Part::ALL.into_iter().filter_map(|part| Self::worst_of(record, candidate, part));
+        // Of equal ones that of the place.
+        each.rev().max_by(|x, y| x.in_parts().total_cmp(&y.in_parts()))
+    }
+
+    /// Returns the worst deviation of one part of the error.
+    fn worst_of(record: &Record, candidate: &Candidate, part: Part) -> Option<Deviation> {
+        let task = &record.problem.resolved.task;
+        let tolerances = match part {
+            Part::Place => task.tolerance.as_ref()?,
+            Part::Angle => task.body.as_ref()?.tolerance_deg.as_ref()?,
+        };
+        let deviations = tolerances.iter().enumerate().filter_map(|(point, tolerance)| {
+            let error = body::error(task, candidate, point, part)?;
+            Some(Deviation { point, part, error, tolerance: *tolerance })
         });
-        deviations.max_by(|x, y| x.part().total_cmp(&y.part()).then(y.point.cmp(&x.point)))
+        deviations.max_by(|x, y| x.in_parts().total_cmp(&y.in_parts()).then(y.point.cmp(&x.point)))
     }
 
     /// Returns the error in parts of its tolerance; 0 if there is no error.
-    fn part(&self) -> f64 {
+    fn in_parts(&self) -> f64 {
         if self.error == 0.0 { 0.0 } else { self.error / self.tolerance }
     }
 }
@@ -149,7 +171,8 @@ impl Deviation {
 /// Returns whether a candidate keeps to the tolerances, and if none does, by how much and at which point the nearest
 /// one exceeds them: a sentence or two; `None` if no tolerance was asked for.
 pub(super) fn tolerances(record: &Record) -> Option<String> {
-    let band = |c: &Candidate| Deviation::worst(record, c).map_or(f64::NEG_INFINITY, |worst| worst.part());
+    let band =
+        |c: &Candidate| Deviation::worst(record, c).map_or(f64::NEG_INFINITY, |worst| worst.in_parts());
     // Among the candidates that meet everything else, if there are any.
     let otherwise_good = |c: &Candidate| {
         forbidden(record, c).next().is_none() && c.requirements.iter().all(|r| r.met || is_tolerance(r))
@@ -161,22 +184,28 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
     let first = record.candidates.first()?;
     let best =
         if first.accepted { first } else { nearest(&otherwise_good).or_else(|| nearest(&|_| true))? };
-    let met = best.requirements.iter().find(|r| is_tolerance(r))?.met;
+    let mut rows = best.requirements.iter().filter(|r| is_tolerance(r)).peekable();
+    rows.peek()?;
+    let met = rows.all(|row| row.met);
     let worst = Deviation::worst(record, best)?;
-    let (rank, unit, point) = (best.rank, unit_suffix(record), worst.point);
+    let (rank, noun, point) = (best.rank, record.problem.resolved.task.noun(), worst.point);
+    let (an_error, unit) = match worst.part {
+        Part::Place => ("an error", unit_suffix(record)),
+        Part::Angle => ("an angle error", "°".to_owned()),
+    };
     let [error, allowed, excess] =
-        [worst.error, worst.tolerance, worst.error - worst.tolerance].map(|length| short(length) + &unit);
+        [worst.error, worst.tolerance, worst.error - worst.tolerance].map(|value| short(value) + &unit);
     if met {
         return Some(format!(
-            "Tolerances met: #{rank} comes nearest to one at point {point}, with an error of {error} where {allowed} is \
+            "Tolerances met: #{rank} comes nearest to one at {noun} {point}, with {an_error} of {error} where {allowed} is \
              allowed."
         ));
     }
     let mut text = format!(
-        "Tolerances not met by {excess} at point {point}: the nearest, #{rank}, has an error of {error} there and \
+        "Tolerances not met by {excess} at {noun} {point}: the nearest, #{rank}, has {an_error} of {error} there and \
          {allowed} is allowed."
     );
-    let least = worst.part();
+    let least = worst.in_parts();
     if least.is_finite() {
         // Rounded up, so that the text never promises a narrower band than was found.
         let shown = brief((least * 1e4).ceil() / 1e4, 6);
@@ -185,20 +214,69 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
     Some(text)
 }
 
-/// Returns the objection about the point whose error is the largest part of its tolerance, if tolerances were asked for
+/// Returns the objection about the target whose error is the largest part of its tolerance, if tolerances were asked for
 /// and are exceeded.
-fn of_tolerance(record: &Record, candidate: &Candidate) -> Option<Objection> {
-    let Deviation { point, error, tolerance } = Deviation::worst(record, candidate)?;
+fn of_tolerance(record: &Record, candidate: &Candidate, part: Part) -> Option<Objection> {
+    let Deviation { point, error, tolerance, .. } = Deviation::worst_of(record, candidate, part)?;
     let (mut shown, mut allowed) = (short(error), short(tolerance));
     if shown == allowed {
         (shown, allowed) = (exact(error), exact(tolerance));
     }
-    let sentence = format!("error {shown} at point {point}, tolerance {allowed}");
-    (error - tolerance > 0.0).then(|| Objection { key: "tolerance".to_owned(), sentence })
+    let noun = record.problem.resolved.task.noun();
+    let sentence = match part {
+        Part::Place => format!("error {shown} at {noun} {point}, tolerance {allowed}"),
+        Part::Angle => format!("angle error {shown}° at {noun} {point}, tolerance {allowed}°"),
+    };
+    let key = part.tolerance().definition().short.to_owned();
+    (error - tolerance > 0.0).then_some(Objection { key, sentence })
 }
 
-/// Returns the objective if it is not the plain sum of squares: the heading of its column and a sentence on it.
-pub(super) fn minimised(measure: Measure) -> Option<(&'static str, &'static str)> {
+/// Returns the objective if it is not the plain sum of squares: the heading of its column and a sentence on it. `unit`
+/// follows lengths.
+pub(super) fn minimised(
+    measure: Measure,
+    body: Option<&BodySpec>,
+    unit: &str,
+) -> Option<(&'static str, String)> {
+    let Some(body) = body else {
+        let (head, sentence) = minimised_in_a_path(measure)?;
+        return Some((head, sentence.to_owned()));
+    };
+    let weight = format!("angle_weight = {}{unit}", brief(body.angle_weight, 4));
+    let sum = |each: &str| {
+        let sentence = format!(
+            "objective: the sum of squared errors of the place and of (angle_weight times the angle's error in radians), \
+             squared{each}; {weight}. It was minimised and ranks; rms and max are of the place{}.",
+            if each.is_empty() { "" } else { " and without weights" }
+        );
+        ("objective", sentence)
+    };
+    Some(match measure {
+        Measure::Sum => sum(""),
+        Measure::WeightedSum => sum(", each times its pose's weight"),
+        Measure::Largest => (
+            "deviation",
+            format!(
+                "deviation: the largest error, of the place or of the angle in radians times angle_weight, which was \
+                 minimised and ranks; {weight}."
+            ),
+        ),
+        Measure::LargestPart => (
+            "deviation",
+            "deviation: the largest error of place or angle in parts of its pose's tolerance, which was minimised and \
+             ranks; 1 is just met."
+                .to_owned(),
+        ),
+    })
+}
+
+/// Returns the objective of a record as [`minimised`] does.
+pub(super) fn minimised_in(record: &Record) -> Option<(&'static str, String)> {
+    let spec = &record.problem.resolved;
+    minimised(spec.measure(), spec.task.body.as_ref(), &unit_suffix(record))
+}
+
+fn minimised_in_a_path(measure: Measure) -> Option<(&'static str, &'static str)> {
     match measure {
         Measure::Sum => None,
         Measure::WeightedSum => Some((
@@ -216,6 +294,13 @@ pub(super) fn minimised(measure: Measure) -> Option<(&'static str, &'static str)
     }
 }
 
+/// Returns the errors of the body's angle in a motion: `angle error 0.31° rms, largest 0.8° at pose 3`.
+pub(super) fn angle_errors(candidate: &Candidate) -> Option<String> {
+    let angle = candidate.error.angle.as_ref()?;
+    let [rms, max] = [angle.rms_deg, angle.max_deg].map(|degrees| significant(degrees, 3));
+    Some(format!("angle error {rms}° rms, largest {max}° at pose {}", angle.max_at))
+}
+
 /// Returns the point whose error is the largest in parts of its tolerance, if tolerances were asked for.
 pub(super) fn worst_in_parts(record: &Record, candidate: &Candidate) -> Option<usize> {
     Deviation::worst(record, candidate).map(|worst| worst.point)
@@ -231,7 +316,14 @@ pub(super) fn fewer(record: &Record) -> Option<String> {
     }
     let accepted = record.candidates.iter().any(|c| c.accepted);
     let mut text = format!("{listed} of the {asked} candidates that were asked for: ");
+    let is_motion = record.problem.resolved.task.body.is_some();
     text.push_str(match (record.method.used == ["continuation"], accepted) {
+        (false, true) if is_motion => {
+            "whatever else the search judged takes the body the way of one of these, or is not accepted."
+        }
+        (false, false) if is_motion => {
+            "whatever else the search judged takes the body the way of one of these."
+        }
         (true, true) => "no other linkage through the nine points is accepted.",
         (true, false) => "no other linkage passes the nine points.",
         (false, true) => {
@@ -395,7 +487,8 @@ pub(super) fn unmet(record: &Record, candidate: &Candidate) -> Vec<String> {
         }
     }
     if !candidate.accepted && !candidate.requirements.iter().any(is_tolerance) {
-        names.extend(of_tolerance(record, candidate).map(|objection| objection.key));
+        let missed = Part::ALL.into_iter().filter_map(|part| of_tolerance(record, candidate, part));
+        names.extend(missed.map(|objection| objection.key));
     }
     names
 }

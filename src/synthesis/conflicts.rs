@@ -131,7 +131,8 @@ impl Inquiry<'_> {
         // A stable sort: equally near ones in the order of the demands.
         found.sort_by(|one, other| one.0.total_cmp(&other.0));
         found.truncate(PROPOSALS);
-        let among: Vec<String> = among.into_iter().map(|demand| demand.key().into()).collect();
+        let spec = self.problem.spec();
+        let among: Vec<String> = among.into_iter().map(|demand| demand.key_in(spec)).collect();
         Ok(Explained {
             conflict: (!among.is_empty()).then_some(Conflict { among }),
             relaxations: found.into_iter().map(|(_, relaxation)| relaxation).collect(),

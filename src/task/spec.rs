@@ -336,7 +336,12 @@ impl ProblemSpec {
                 Measure::WeightedSum
             }
             Objective::SumOfSquares => Measure::Sum,
-            Objective::MaxDeviation if path.tolerance.is_some() => Measure::LargestPart,
+            Objective::MaxDeviation
+                if path.tolerance.is_some()
+                    || path.body.as_ref().is_some_and(|body| body.tolerance_deg.is_some()) =>
+            {
+                Measure::LargestPart
+            }
             Objective::MaxDeviation => Measure::Largest,
         }
     }

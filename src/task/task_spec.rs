@@ -114,6 +114,11 @@ impl TaskSpec {
         if self.body.is_some() { "task.motion" } else { "task.path" }
     }
 
+    /// Returns the word for one of its targets: `point` or `pose`.
+    pub fn noun(&self) -> &'static str {
+        if self.body.is_some() { "pose" } else { "point" }
+    }
+
     /// Returns the key of its list of targets in a file: `task.path.points` or `task.motion.poses`.
     pub fn list_key(&self) -> &'static str {
         if self.body.is_some() { "task.motion.poses" } else { "task.path.points" }

@@ -97,7 +97,8 @@ fn output(options: &Options) -> Output {
 fn write(options: &Options, record: &Record, begun: Instant, search_s: f64) -> Result<PathBuf, Ended> {
     if let Some(path) = linkage_place(options) {
         let Some(best) = record.candidates.first() else { return Err(Ended::Bad) };
-        let text = linkage_file::to_toml(&record.problem.name, record.problem.unit, &best.linkage);
+        let (name, unit) = (&record.problem.name, record.problem.unit);
+        let text = linkage_file::to_toml_with_body(name, unit, &best.linkage, best.frame_deg);
         output(options).write(&[(path, FileKind::Linkage, text)])?;
         return Ok(path.to_path_buf());
     }

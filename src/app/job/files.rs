@@ -97,8 +97,8 @@ pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<
         ("candidates.csv".to_string(), csv::candidates_csv(record).into_bytes()),
     ];
     for Listed { file, name, candidate } in listed(record) {
-        let toml =
-            linkage_file::to_toml(&linkage_name(record, &name), record.problem.unit, &candidate.linkage);
+        let (named, unit) = (linkage_name(record, &name), record.problem.unit);
+        let toml = linkage_file::to_toml_with_body(&named, unit, &candidate.linkage, candidate.frame_deg);
         files.push((format!("linkage-{file}.toml"), toml.into_bytes()));
         files.push((format!("curve-{file}.csv"), csv::candidate_curve_csv(candidate).into_bytes()));
     }

@@ -85,7 +85,9 @@ pub(super) fn archive(
         html::report_html(record, index)
     });
     add("drawing.svg", "the linkage over its path", svg::candidate_svg(record, index));
-    let linkage = linkage_file::to_toml(&record.problem.name, record.problem.unit, &candidate.linkage);
+    let (problem_name, unit) = (&record.problem.name, record.problem.unit);
+    let linkage =
+        linkage_file::to_toml_with_body(problem_name, unit, &candidate.linkage, candidate.frame_deg);
     add("linkage.toml", "the linkage: linkwright analyze and export read it", linkage);
     if let Some(problem) = problem {
         add("problem.toml", "what was asked: linkwright synth and studio read it", problem);

@@ -318,3 +318,19 @@ pub fn to_toml(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
         i64::from(p.side),
     )
 }
+
+/// Returns the linkage file of a linkage as [`to_toml`] does; of a body that lies at `frame_deg` from C -> D on the coupler a
+/// comment says so.
+pub fn to_toml_with_body(
+    name: &str,
+    unit: Option<Unit>,
+    linkage: &FourBar,
+    frame_deg: Option<f64>,
+) -> String {
+    let text = to_toml(name, unit, linkage);
+    let Some(frame_deg) = frame_deg else { return text };
+    let comment = format!(
+        "# The body: P is its origin, and its x axis lies {frame_deg:?} degrees counter-clockwise from the line from C to D.\n"
+    );
+    text.replacen("format = ", &format!("{comment}format = "), 1)
+}

@@ -145,7 +145,8 @@ impl Comparison<'_> {
             self.differ("conflict", "something that conflicts", "nothing: there is an accepted candidate");
         }
         let problem = self.problem;
-        let of = |key: &str| Demand::of(problem).into_iter().find(|demand| demand.key() == key);
+        let of =
+            |key: &str| Demand::of(problem).into_iter().find(|demand| demand.key_in(problem.spec()) == key);
         if let Some(conflict) = &record.conflict {
             for (i, key) in conflict.among.iter().enumerate() {
                 if of(key).is_none() {

@@ -2,8 +2,8 @@
 
 use super::{Comparison, LeftOut, Ranked, SortKey};
 use crate::mechanism::{FourBar, Unit};
-use crate::record::Tool;
-use crate::report::csv::{Column, PARAMETERS, cells, figures, names, parameters, written};
+use crate::record::{Candidate, Tool};
+use crate::report::csv::{Column, OF_MOTION, PARAMETERS, cells, figures, names, parameters, written};
 use crate::report::text::{cell, exact};
 use crate::report::words;
 use crate::task::Defect;
@@ -95,6 +95,9 @@ struct Row<'a> {
     percent_above_reference: Option<Figures<f64>>,
     /// The point with the largest error.
     max_at: usize,
+    /// In a motion: the angle from the direction C -> D to the body's x axis, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame_deg: Option<f64>,
     #[serde(rename = "type")]
     linkage_type: &'static str,
     /// The motion over which the transmission angle is judged.
@@ -135,9 +138,11 @@ impl<T: Serialize> Serialize for Figures<T> {
 }
 
 impl<'a> Row<'a> {
-    fn new(row: &'a Ranked, keys: &[SortKey]) -> Self {
+    fn new(row: &'a Ranked, keys: &[SortKey], has_angles: bool) -> Self {
         let (entry, candidate) = (&row.entry, &row.entry.candidate);
+        let figures = SortKey::ALL.into_iter().filter(|key| has_angles || !key.is_of_motions());
         let differences = SortKey::ALL.into_iter().zip(row.difference_percent.iter().copied());
+        let differences = differences.filter(|(key, _)| has_angles || !key.is_of_motions());
         Row {
             rank: row.rank,
             label: &entry.label,
@@ -147,10 +152,11 @@ impl<'a> Row<'a> {
             on_front: row.on_front,
             ranks: Figures(keys.iter().copied().zip(row.ranks.iter().map(|rank| Some(*rank))).collect()),
             behind_percent: row.behind_percent,
-            figures: Figures(SortKey::ALL.map(|key| (key, row.figure_of(key))).to_vec()),
+            figures: Figures(figures.map(|key| (key, row.figure_of(key))).collect()),
             percent_above_reference: (!row.difference_percent.is_empty())
                 .then(|| Figures(differences.collect())),
             max_at: candidate.error.max_at,
+            frame_deg: candidate.frame_deg,
             linkage_type: candidate.linkage_type.name(),
             transmission_over: words::over(candidate.transmission_deg.over),
             unit: entry.unit.map(Unit::label),
@@ -170,29 +176,38 @@ impl Comparison {
     }
 
     /// Returns one row for each entry, every number to the last digit: place, figures and parameters; with several keys a
-    /// column `rank_KEY` for each follows, with a reference a column `KEY_percent_above` for each figure.
+    /// column `rank_KEY` for each follows, with a reference a column `KEY_percent_above` for each figure. With a motion among
+    /// the rows there are the errors of its body's angle.
     pub fn csv(&self) -> String {
         let several = self.keys.len() > 1;
-        let head = names(&PLACE).chain(FIGURES).chain(["size", "extent"]).chain(names(&PARAMETERS));
+        let of_motion: &[Column<Candidate>] = if self.has_angles() { &OF_MOTION } else { &[] };
+        let differences: Vec<SortKey> =
+            SortKey::ALL.into_iter().filter(|key| self.has_angles() || !key.is_of_motions()).collect();
+        let head = names(&PLACE).chain(FIGURES).chain(["size", "extent"]).chain(names(of_motion));
+        let head = head.chain(names(&PARAMETERS));
         let mut head: Vec<String> = head.chain(["unit", "recorded_differently"]).map(str::to_owned).collect();
         if several {
             head.extend(self.keys.iter().map(|key| format!("rank_{}", key.name())));
         }
         if self.reference.is_some() {
-            head.extend(SortKey::ALL.map(|key| format!("{}_percent_above", key.name())));
+            head.extend(differences.iter().map(|key| format!("{}_percent_above", key.name())));
         }
         let rows = self.rows.iter().map(|row| {
             let entry = &row.entry;
             let mut line = cells(&PLACE, row);
             line.extend(figures(&entry.candidate, &FIGURES));
             line.extend([SortKey::Size, SortKey::Extent].map(|key| number(row.figure_of(key))));
+            line.extend(cells(of_motion, &entry.candidate));
             line.extend(parameters(&entry.candidate.linkage));
             line.push(entry.unit.map_or(String::new(), |unit| unit.label().to_owned()));
             line.push(cell(&entry.untrue.join("; ")));
             if several {
                 line.extend(row.ranks.iter().map(usize::to_string));
             }
-            line.extend(row.difference_percent.iter().copied().map(number));
+            if !row.difference_percent.is_empty() {
+                let of = |key: &SortKey| row.difference_percent.get(*key as usize).copied().flatten();
+                line.extend(differences.iter().map(of).map(number));
+            }
             line
         });
         written(head, rows)
@@ -209,7 +224,7 @@ impl Comparison {
             same_unit: self.same_unit(),
             front_of: [SortKey::Rms, SortKey::Transmission, SortKey::Size].map(SortKey::name),
             reference: self.reference_label(),
-            rows: self.rows.iter().map(|row| Row::new(row, &self.keys)).collect(),
+            rows: self.rows.iter().map(|row| Row::new(row, &self.keys, self.has_angles())).collect(),
             left_out: &self.left_out,
             notes: self.notes(),
         };

@@ -27,11 +27,15 @@ pub enum SortKey {
     /// The objective of the candidate's problem, least first: the sum of squared errors with its weights, or the
     /// largest error, in parts of the tolerances if these are given.
     Objective,
+    /// The root of the mean squared error of a body's angle, least first.
+    AngleRms,
+    /// The largest error of a body's angle, least first.
+    AngleMax,
 }
 
 impl SortKey {
     /// Every key.
-    pub const ALL: [SortKey; 9] = [
+    pub const ALL: [SortKey; 11] = [
         SortKey::SumSq,
         SortKey::Rms,
         SortKey::Max,
@@ -41,12 +45,30 @@ impl SortKey {
         SortKey::Size,
         SortKey::Extent,
         SortKey::Objective,
+        SortKey::AngleRms,
+        SortKey::AngleMax,
     ];
+
+    /// Returns whether only motions have this figure.
+    pub fn is_of_motions(self) -> bool {
+        matches!(self, SortKey::AngleRms | SortKey::AngleMax)
+    }
 
     /// Returns the name on the command line: `to_curve`.
     pub fn name(self) -> &'static str {
-        const NAMES: [&str; SortKey::ALL.len()] =
-            ["sum_sq", "rms", "max", "to_curve", "transmission", "link_ratio", "size", "extent", "objective"];
+        const NAMES: [&str; SortKey::ALL.len()] = [
+            "sum_sq",
+            "rms",
+            "max",
+            "to_curve",
+            "transmission",
+            "link_ratio",
+            "size",
+            "extent",
+            "objective",
+            "angle_rms",
+            "angle_max",
+        ];
         NAMES[self as usize]
     }
 

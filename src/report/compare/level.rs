@@ -28,6 +28,7 @@ pub(super) fn nothing(entry: &Entry, key: SortKey) -> f64 {
             Measure::Largest => mean_sq.sqrt(),
             Measure::LargestPart => EXACT_MEAN_SQ.sqrt(),
         },
+        SortKey::AngleRms | SortKey::AngleMax => EXACT_MEAN_SQ.sqrt().to_degrees(),
         SortKey::Transmission | SortKey::LinkRatio | SortKey::Size | SortKey::Extent => 0.0,
     }
 }

@@ -11,7 +11,7 @@ use super::scene::{Bounds, SAMPLES, circuits};
 use super::text::clean;
 use crate::mechanism::Unit;
 use crate::record::Candidate;
-use crate::task::spec::Measure;
+use crate::task::spec::{BodySpec, Measure};
 use serde::Serialize;
 use std::cmp::Ordering;
 
@@ -42,6 +42,8 @@ pub struct Entry {
     pub target_name: String,
     /// The target to which the errors are measured.
     pub target: Vec<[f64; 2]>,
+    /// The angles of the body at the target, in a motion.
+    pub body: Option<BodySpec>,
     /// The unit of the lengths.
     pub unit: Option<Unit>,
     /// The measure by which the candidates of that problem are ranked.
@@ -56,6 +58,12 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// Returns whether the targets of both are the same, up to the rounding of a change of units: points, and the angles
+    /// of a body and their weight.
+    fn has_target_of(&self, other: &Entry) -> bool {
+        same_points(&self.target, &other.target) && same_body(self.body.as_ref(), other.body.as_ref())
+    }
+
     /// Returns the size: the diagonal of the box that A, B and the moving joints sweep over the circuits used (half a
     /// degree apart); NaN if the links cannot be joined.
     pub fn size(&self) -> f64 {
@@ -84,6 +92,8 @@ impl Entry {
             SortKey::Size => self.size(),
             SortKey::Extent => self.extent.unwrap_or(f64::NAN),
             SortKey::Objective => error.objective,
+            SortKey::AngleRms => error.angle.map_or(f64::NAN, |angle| angle.rms_deg),
+            SortKey::AngleMax => error.angle.map_or(f64::NAN, |angle| angle.max_deg),
         }
     }
 }
@@ -159,6 +169,18 @@ pub fn same_points(one: &[[f64; 2]], other: &[[f64; 2]]) -> bool {
     one.len() == other.len() && one.iter().flatten().zip(other.iter().flatten()).all(|(x, y)| near(*x, *y))
 }
 
+/// Returns whether two bodies are wanted at the same angles, which count alike.
+pub fn same_body(one: Option<&BodySpec>, other: Option<&BodySpec>) -> bool {
+    match (one, other) {
+        (None, None) => true,
+        (Some(one), Some(other)) => {
+            one.angle_deg == other.angle_deg
+                && same_points(&[[one.angle_weight, 0.0]], &[[other.angle_weight, 0.0]])
+        }
+        _ => false,
+    }
+}
+
 /// Returns the first of several names: `a, b, c and 2 more`.
 fn first_few<T: AsRef<str>>(names: &[T]) -> String {
     const NAMED: usize = 3;
@@ -175,11 +197,11 @@ fn order(x: Option<f64>, y: Option<f64>, key: SortKey) -> Ordering {
 /// Returns the default key: the objective that all the entries' problems minimise, if it is the same for all and not
 /// the plain sum; otherwise the sum of squared errors.
 fn usual_key(entries: &[Entry]) -> SortKey {
-    let one = entries.windows(2).all(|w| {
-        w[0].measure == w[1].measure && w[0].unit == w[1].unit && same_points(&w[0].target, &w[1].target)
-    });
+    let one = entries
+        .windows(2)
+        .all(|w| w[0].measure == w[1].measure && w[0].unit == w[1].unit && w[0].has_target_of(&w[1]));
     match entries.first() {
-        Some(first) if one && first.measure != Measure::Sum => SortKey::Objective,
+        Some(first) if one && (first.measure != Measure::Sum || first.body.is_some()) => SortKey::Objective,
         _ => SortKey::default(),
     }
 }
@@ -255,7 +277,7 @@ pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) ->
 impl Comparison {
     /// Returns whether all errors are measured to the same target.
     pub fn same_target(&self) -> bool {
-        self.rows.windows(2).all(|w| same_points(&w[0].entry.target, &w[1].entry.target))
+        self.rows.windows(2).all(|w| w[0].entry.has_target_of(&w[1].entry))
     }
 
     /// Returns the unit of all lengths, if they have the same one.
@@ -270,10 +292,16 @@ impl Comparison {
 
     /// Returns the objective, if all rows minimised the same one and it is not the plain sum: the word for its column,
     /// and a sentence on it.
-    pub(super) fn minimised(&self) -> Option<(&'static str, &'static str)> {
-        let measure = self.rows.first()?.entry.measure;
-        let one = self.rows.iter().all(|row| row.entry.measure == measure);
-        super::words::minimised(measure).filter(|_| one && self.same_target())
+    pub(super) fn minimised(&self) -> Option<(&'static str, String)> {
+        let Entry { measure, body, unit, .. } = &self.rows.first()?.entry;
+        let one = self.rows.iter().all(|row| row.entry.measure == *measure) && self.same_target();
+        let unit = super::words::length_suffix(*unit);
+        one.then(|| super::words::minimised(*measure, body.as_ref(), &unit)).flatten()
+    }
+
+    /// Returns whether a row is of a motion, so that there are errors of the body's angle.
+    pub(super) fn has_angles(&self) -> bool {
+        self.rows.iter().any(|row| row.entry.body.is_some())
     }
 
     /// Returns whether every record is true.
@@ -293,13 +321,16 @@ impl Comparison {
             ));
         }
         let targets = "The targets differ: errors to different targets say little beside each other, and no front is marked.";
+        let kinds = "Paths and motions stand side by side: a path has no errors of an angle, and objectives of the two are \
+                     not alike.";
         let units = "The units differ: lengths are as they stand in each result, and no front is marked.";
         let sentences = [
             (!self.same_target()).then_some(targets),
+            (self.has_angles() && self.rows.iter().any(|row| row.entry.body.is_none())).then_some(kinds),
             (!self.same_unit()).then_some(units),
-            self.minimised().map(|(_, sentence)| sentence),
         ];
         notes.extend(sentences.into_iter().flatten().map(str::to_owned));
+        notes.extend(self.minimised().map(|(_, sentence)| sentence));
         notes.extend(self.remarks.iter().cloned());
         notes.extend(
             self.left_out.iter().map(|out| format!("Left out: {}: {}.", clean(&out.label), clean(&out.why))),

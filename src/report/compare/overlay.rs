@@ -1,7 +1,8 @@
 //! The overlay of a comparison: its coupler curves over the target.
 
-use super::{Comparison, Ranked, SortKey, strokes, tables};
+use super::{Comparison, Entry, Ranked, SortKey, strokes, tables};
 use crate::mechanism::{Complex, point};
+use crate::report::bodies::{self, Posed};
 use crate::report::canvas::{Anchor, Area, Canvas, Frame, Spot, View, bold, font, palette, px};
 use crate::report::scene::{Bounds, circuits};
 use crate::report::text::{clean, shortened, shortened_in_front, text_width, wrapped};
@@ -65,12 +66,12 @@ impl Overlay {
                     canvas.path(&spots, true, &strokes::stroke(i));
                 }
                 if !one_target {
-                    targets(canvas, &view, &comparison.rows[i].entry.target, strokes::colour(i));
+                    targets(canvas, &view, &comparison.rows[i].entry, strokes::colour(i));
                 }
                 canvas.raw("</g>");
             }
             if let Some(first) = comparison.rows.first().filter(|_| one_target) {
-                targets(canvas, &view, &first.entry.target, palette::TARGET);
+                targets(canvas, &view, &first.entry, palette::TARGET);
             }
         });
         let unit = comparison.rows.first().and_then(|row| row.entry.unit);
@@ -91,10 +92,19 @@ impl Overlay {
     }
 }
 
-/// Draws the target's points, the first filled; as dots if they are many.
-fn targets(canvas: &mut Canvas, view: &View, points: &[[f64; 2]], colour: &str) {
+/// Draws the target's points, the first filled; as dots if they are many; in a motion the frames of the body too.
+fn targets(canvas: &mut Canvas, view: &View, entry: &Entry, colour: &str) {
+    let points = &entry.target;
     let spots: Vec<Spot> =
         points.iter().filter(|p| p.iter().all(|x| x.is_finite())).map(|p| view.spot(point(*p))).collect();
+    if let Some(body) = &entry.body {
+        let given = points.iter().zip(&body.angle_deg).filter_map(|(p, angle)| Some((*p, (*angle)?)));
+        let given: Vec<_> = given.filter(|(p, _)| p.iter().all(|x| x.is_finite())).collect();
+        for (i, (p, angle)) in given.iter().enumerate().filter(|(i, _)| bodies::is_strong(*i, given.len())) {
+            let posed = Posed { at: view.spot(point(*p)), angle: angle.to_radians() };
+            posed.outlined(canvas, bodies::length(&spots), colour, if i == 0 { 1.2 } else { 1.0 });
+        }
+    }
     if spots.len() > MARKED {
         return canvas.dots(&spots, 3.4, colour);
     }
@@ -137,7 +147,7 @@ impl Comparison {
         let mut notes = overlay.remarks(self);
         if self.same_target() && !self.rows.is_empty() {
             let name = clean(&self.rows[0].entry.target_name);
-            notes.insert(0, format!("Circles: the target {name}, its point 0 filled."));
+            notes.insert(0, format!("{}.", self.circles(&format!("the target {name}"))));
         }
         notes.extend(self.notes());
         if self.rows.iter().any(|row| row.on_front) {
@@ -150,6 +160,16 @@ impl Comparison {
             }
         }
         canvas.document(width, y + 14.0, &title, &self.description())
+    }
+
+    /// Returns the meaning of the marks of the target.
+    pub(super) fn circles(&self, target: &str) -> String {
+        match self.has_angles() {
+            false => format!("Circles: {target}, its point 0 filled"),
+            true => format!(
+                "Circles: {target}, its pose 0 filled; the arms are the body's x (long) and y (short) axis"
+            ),
+        }
     }
 
     /// Returns a title such as `4 linkages on k18`.

@@ -7,8 +7,6 @@ use crate::report::grid::Align::{Left, Right};
 use crate::report::grid::{Colour, Grid, Ink, plain, verdict};
 use crate::report::text::{COLUMNS, NO_NUMBER, clean, columns_of, indented, shortened_in_front, significant};
 
-/// The headings of the figures after the first.
-const SHOWN: [&str; 7] = ["rms", "max", "to curve", "transm.", "ratio", "size", "extent"];
 /// The largest width of a label, in columns.
 const LABEL: usize = 28;
 /// The smallest width of a label, in columns.
@@ -25,7 +23,7 @@ pub(super) fn signed_percent(percent: Option<f64>) -> String {
 
 /// Returns a figure with its unit of angle; `-` if it is missing.
 pub(super) fn shown(row: &Ranked, key: SortKey, digits: usize) -> String {
-    let degrees = if key == SortKey::Transmission { "°" } else { "" };
+    let degrees = if key == SortKey::Transmission || key.is_of_motions() { "°" } else { "" };
     let figure = row.figure_of(key);
     figure.map_or(NO_NUMBER.to_owned(), |figure| format!("{}{degrees}", significant(figure, digits)))
 }
@@ -88,16 +86,34 @@ impl Comparison {
     }
 
     /// Returns the figures of the tables, in the order of their columns.
-    pub(super) fn shown_figures(&self) -> [SortKey; 8] {
-        use SortKey::{Extent, LinkRatio, Max, Rms, Size, ToCurve, Transmission};
-        [self.first_figure(), Rms, Max, ToCurve, Transmission, LinkRatio, Size, Extent]
+    pub(super) fn shown_figures(&self) -> Vec<SortKey> {
+        use SortKey::{AngleMax, AngleRms, Extent, LinkRatio, Max, Rms, Size, ToCurve, Transmission};
+        let first = self.first_figure();
+        match self.has_angles() {
+            false => vec![first, Rms, Max, ToCurve, Transmission, LinkRatio, Size, Extent],
+            true => vec![first, Rms, Max, AngleRms, AngleMax, Transmission, LinkRatio, Size, Extent],
+        }
+    }
+
+    /// Returns the headings of those figures after the first.
+    fn heads(&self) -> Vec<&'static str> {
+        let head = |key: &SortKey| match key {
+            SortKey::ToCurve => "to curve",
+            SortKey::Transmission => "transm.",
+            SortKey::LinkRatio => "ratio",
+            SortKey::AngleRms => "angle",
+            SortKey::AngleMax => "max",
+            key => key.name(),
+        };
+        self.shown_figures()[1..].iter().map(head).collect()
     }
 
     fn figures(&self, colour: Colour, label: usize) -> String {
+        let heads = self.heads();
         let mut grid = Grid::new(&[
             (Left, &["#", "linkage"]),
             (Right, &["behind", self.first_head("sum of sq")]),
-            (Right, &SHOWN),
+            (Right, &heads),
             (Left, &["ok"]),
         ]);
         let first = self.first_figure();
@@ -107,7 +123,7 @@ impl Comparison {
             let untrue = if row.entry.untrue.is_empty() { "" } else { "!" };
             let rank = (format!("{}{untrue}", marked_rank(row)), Ink::Strong);
             let mut cells = vec![rank, plain(named(row, label)), plain(behind(row))];
-            cells.extend(self.shown_figures().map(figure));
+            cells.extend(self.shown_figures().into_iter().map(figure));
             cells.push(verdict(if accepted { "yes" } else { "no" }, accepted));
             grid.row(cells);
         }
@@ -127,14 +143,15 @@ impl Comparison {
     }
 
     fn differences(&self, colour: Colour, label: usize) -> String {
+        let heads = self.heads();
         let mut grid = Grid::new(&[
             (Left, &["#", "linkage"]),
             (Right, &[self.first_head("sum of sq")]),
-            (Right, &SHOWN),
+            (Right, &heads),
         ]);
         for (i, row) in self.rows.iter().enumerate() {
             let mut cells = vec![(row.rank.to_string(), Ink::Strong), plain(named(row, label))];
-            cells.extend(self.shown_figures().map(|key| {
+            cells.extend(self.shown_figures().into_iter().map(|key| {
                 let percent = row.difference_percent.get(key as usize).copied().flatten();
                 plain(if self.reference == Some(i) { "ref".to_owned() } else { signed_percent(percent) })
             }));

@@ -13,6 +13,7 @@ impl Entry {
         let factor = from.factor_to(to);
         entry.unit = Some(to);
         entry.target.iter_mut().flatten().for_each(|x| *x *= factor);
+        entry.body.iter_mut().for_each(|body| body.angle_weight *= factor);
         entry.extent = entry.extent.map(|extent| extent * factor);
         let candidate = &mut entry.candidate;
         candidate.linkage = candidate.linkage.scaled(factor)?;

@@ -11,7 +11,10 @@ use crate::report::text::exact;
 
 /// Draws the links as lines, the coupler curve, the joints as circles of the hole's diameter, and the target points.
 pub(super) fn sketch(model: &Model<'_>, joints: &Joints) -> String {
-    let mut drawing = Drawing::new(&[("SKELETON", 7), ("CURVE", 1), ("JOINTS", 3), ("TARGET", 5)]);
+    let mut layers = vec![("SKELETON", 7), ("CURVE", 1), ("JOINTS", 3), ("TARGET", 5)];
+    let body = model.body(joints);
+    layers.extend(body.map(|_| ("BODY", 6)));
+    let mut drawing = Drawing::new(&layers);
     let [a, b, c, d, p] = all_joints(&model.linkage, joints);
     for (from, to) in [(a, b), (a, c), (c, d), (b, d), (c, p), (d, p)] {
         // Some programs refuse a line without length.
@@ -30,6 +33,11 @@ pub(super) fn sketch(model: &Model<'_>, joints: &Joints) -> String {
     }
     if model.target.len() > 1 {
         drawing.polyline("TARGET", &straight(&model.target), model.subject.closed);
+    }
+    let frames = model.wanted.iter().map(|frame| ("TARGET", frame));
+    for (layer, [tip, origin, end]) in frames.chain(body.iter().map(|frame| ("BODY", frame))) {
+        drawing.line(layer, *origin, *tip);
+        drawing.line(layer, *origin, *end);
     }
     drawing.document(&[mark(), model.heading()])
 }

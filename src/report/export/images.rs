@@ -169,6 +169,9 @@ impl Sheet {
             self.disc(&mut picture, *at, TARGET, 0.007);
             self.disc(&mut picture, *at, PAPER, 0.004);
         }
+        for frame in &model.wanted {
+            self.line(&mut picture, frame, false, TARGET, 0.003);
+        }
         Ok(picture)
     }
 
@@ -186,6 +189,9 @@ impl Sheet {
             self.disc(picture, joint, PAPER, radius - 0.005);
         }
         self.disc(picture, p, CURVE, 0.012);
+        if let Some(frame) = model.body(joints) {
+            self.line(picture, &frame, false, CURVE, 0.007);
+        }
     }
 }
 

@@ -39,6 +39,7 @@ use crate::mechanism::analysis::{Request, analyze, full_turn};
 use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::record::Tool;
 use crate::report::analysis_csv::analysis_csv;
+use crate::report::text::exact;
 use model::Model;
 
 /// An exported file.
@@ -105,9 +106,14 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
                 methods: Vec::new(),
                 all_configurations: false,
             };
+            notes.extend(
+                subject.frame_deg.map(|deg| format!("the body's angle is coupler_deg + {}", exact(deg))),
+            );
             analysis_csv(&analyze(&request))
         }
-        Format::Toml => linkage_file::to_toml(&subject.legal_name(), unit, &linkage),
+        Format::Toml => {
+            linkage_file::to_toml_with_body(&subject.legal_name(), unit, &linkage, subject.frame_deg)
+        }
         _ => {
             let mut object = serde_json::json!({
                 "format": linkage_file::FORMAT,
@@ -117,6 +123,9 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
             });
             if let Some(unit) = unit {
                 object["unit"] = unit.label().into();
+            }
+            if let Some(frame_deg) = subject.frame_deg {
+                object["frame_deg"] = frame_deg.into();
             }
             format!("{object:#}\n")
         }

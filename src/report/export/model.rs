@@ -5,7 +5,8 @@ use super::{Format, Subject};
 use crate::mechanism::Unit;
 use crate::mechanism::plates::{Placement, Plate};
 use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints, point};
-use crate::report::scene::{circuits_through, middle_position};
+use crate::report::body;
+use crate::report::scene::{Bounds, circuits_through, middle_position};
 use crate::report::text::{brief, exact};
 
 /// The allowed longest link in millimetres: from a hundredth of a millimetre to ten kilometres.
@@ -30,6 +31,8 @@ pub(super) struct Model<'a> {
     /// The length of one unit of the file in millimetres, at this scale.
     pub(super) mm_per_unit: f64,
     pub(super) target: Vec<Complex>,
+    /// The wanted frames of a motion's body.
+    pub(super) wanted: Vec<Arms>,
     /// The closed paths of P along every circuit that is used.
     pub(super) curves: Vec<Vec<Complex>>,
     pub(super) hole: f64,
@@ -39,6 +42,18 @@ pub(super) struct Model<'a> {
     pub(super) gap: f64,
     pub(super) chord: f64,
     assumed: Vec<(&'static str, String)>,
+}
+
+/// A frame of a body as a line: the end of its x axis, its origin, the end of its shorter y axis.
+pub(super) type Arms = [Complex; 3];
+
+/// The length of a frame's x axis in parts of the diagonal of the target's box, and of its y axis in parts of that.
+const ARM: f64 = 0.08;
+const SHORT_ARM: f64 = 0.6;
+
+fn arms(at: Complex, angle: f64, length: f64) -> Arms {
+    let along = Complex::from_polar(length, angle);
+    [at + along, at, at + SHORT_ARM * Complex::i() * along]
 }
 
 impl<'a> Model<'a> {
@@ -94,6 +109,11 @@ impl<'a> Model<'a> {
                 "choose kerf_mm below hole_mm",
             ));
         }
+        // A body that only turns has no size of its own.
+        let size = Bounds::of(target.iter().copied()).diagonal();
+        let arm = ARM * if size > 0.0 { size } else { longest };
+        let angles = target.iter().zip(&subject.body_deg);
+        let wanted = angles.filter_map(|(at, deg)| Some(arms(*at, (*deg)?.to_radians(), arm))).collect();
         let first = subject.positions.first().copied().unwrap_or_else(|| middle_position(&linkage));
         let all = std::iter::once(first).chain(subject.positions.iter().copied());
         let circuits = circuits_through(&linkage, all, settings.samples());
@@ -104,6 +124,7 @@ impl<'a> Model<'a> {
             linkage,
             mm_per_unit,
             target,
+            wanted,
             curves,
             hole,
             margin,
@@ -113,6 +134,13 @@ impl<'a> Model<'a> {
             chord,
             assumed,
         })
+    }
+
+    /// Returns the frame of the body at a position; `None` without a body.
+    pub(super) fn body(&self, joints: &Joints) -> Option<Arms> {
+        let [tip, corner, _] = *self.wanted.first()?;
+        let angle = body::generated(joints.follower_pin - joints.crank_pin, self.subject.frame_deg?);
+        Some(arms(joints.coupler_point, angle, (tip - corner).norm()))
     }
 
     /// Returns the assumptions that matter for a format, one sentence each.

@@ -26,6 +26,10 @@ pub struct Subject {
     pub closed: bool,
     /// The crank angle (radians) and assembly at each target point.
     pub positions: Vec<(f64, AssemblyMode)>,
+    /// In a motion: the angle from C -> D to the body's x axis, degrees.
+    pub frame_deg: Option<f64>,
+    /// In a motion: the angle of the body at each target, degrees; `None` where only the place counts.
+    pub body_deg: Vec<Option<f64>>,
 }
 
 impl Subject {
@@ -42,6 +46,8 @@ impl Subject {
             target: path.points.clone(),
             closed: path.closed,
             positions,
+            frame_deg: candidate.frame_deg,
+            body_deg: path.body.as_ref().map_or(Vec::new(), |body| body.angle_deg.clone()),
         }
     }
 
@@ -55,6 +61,8 @@ impl Subject {
             target: Vec::new(),
             closed: false,
             positions: Vec::new(),
+            frame_deg: None,
+            body_deg: Vec::new(),
         }
     }
 

@@ -146,6 +146,14 @@ pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
         for at in &model.target {
             page.circle("", *at, 0.006 * extent);
         }
+        for frame in &model.wanted {
+            page.path(frame, false, "");
+        }
+        page.push("</g>");
+    }
+    if let Some(frame) = model.body(joints) {
+        page.push(&group("body", &line(CURVE, &thick)));
+        page.path(&frame, false, "");
         page.push("</g>");
     }
     let aside = 0.5 * model.hole + 0.2 * letter;

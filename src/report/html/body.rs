@@ -22,12 +22,12 @@ pub(super) fn body(record: &Record, drawings: &[&str], extent: Extent, shown: Sh
             (practicality::practicality(record, extent))
             (proof::proof(record))
             (exact::exact(record))
-            @if found { (POINTS) }
+            @if found { (points(record)) }
             (reproduction(record))
         }
         footer {
             p.screen-only {
-                "Keys: " kbd { "space" } " play and pause, " kbd { "," } " " kbd { "." } " point before and next, "
+                "Keys: " kbd { "space" } " play and pause, " kbd { "," } " " kbd { "." } " " (record.problem.resolved.task.noun()) " before and next, "
                 kbd { "1" } " to " kbd { "9" }
                 " candidate; arrow keys turn the crank while it or the slider has the focus."
             }
@@ -46,18 +46,36 @@ const LIVE: PreEscaped<&str> = PreEscaped(
 "#,
 );
 
-/// The table of points, filled by the script.
-const POINTS: PreEscaped<&str> = PreEscaped(
-    r#"<section class="card screen-only" id="points"><details><summary>Every point: desired, generated, error</summary>
-<div class="scroll" tabindex="0" role="region" aria-label="Points"><table><thead><tr><th scope="col" class="n">point</th><th scope="col" class="n">crank °</th><th scope="col" class="n">desired x</th><th scope="col" class="n">desired y</th><th scope="col" class="n">generated x</th><th scope="col" class="n">generated y</th><th scope="col" class="n">error</th></tr></thead><tbody></tbody></table></div></details></section>
-"#,
-);
+/// Returns the table of the targets, filled by the script.
+fn points(record: &Record) -> Markup {
+    let task = &record.problem.resolved.task;
+    let (noun, of_motion) = (task.noun(), task.body.is_some());
+    let heads = [noun, "crank °", "desired x", "desired y", "generated x", "generated y", "error"];
+    let of_angle = ["desired angle °", "generated angle °", "angle error °"];
+    let heads = heads.into_iter().chain(of_angle.into_iter().filter(|_| of_motion));
+    html! {
+        section.card.screen-only id="points" {
+            details {
+                summary { "Every " (noun) ": desired, generated, error" } "\n"
+                div.scroll tabindex="0" role="region" aria-label={ (capitalised(noun)) "s" } {
+                    table {
+                        thead { tr { @for head in heads { th scope="col" class="n" { (head) } } } }
+                        tbody {}
+                    }
+                }
+            }
+        } "\n"
+    }
+}
 
 pub(super) fn header(record: &Record) -> Markup {
     let source = record.problem.source.as_deref().map(clean).filter(|source| !source.is_empty());
     let certificate = record.certificate.as_ref().filter(|proof| proof.lower_bound > 0.0);
     let thinned = data::thinned(record).map(|(shown, all)| {
-        format!("The drawing and the charts show {shown} of the {all} points; all figures are of all points.")
+        let noun = record.problem.resolved.task.noun();
+        format!(
+            "The drawing and the charts show {shown} of the {all} {noun}s; all figures are of all {noun}s."
+        )
     });
     let family = record.family.as_ref().map(|family| format!("{}.", capitalised(&clean(&family.text))));
     let without_advice = words::without_advice(record).map(str::to_owned);
@@ -88,13 +106,15 @@ pub(super) fn header(record: &Record) -> Markup {
 /// Returns the outcome of the run, in a sentence.
 fn verdict(record: &Record) -> String {
     let unit = words::unit_suffix(record);
+    let noun = record.problem.resolved.task.noun();
     let figures = |c: &Candidate| {
         format!(
-            "{}, rms error {}{unit}, largest {}{unit} at point {}, worst transmission angle {}°",
+            "{}, rms error {}{unit}, largest {}{unit} at {noun} {}{}, worst transmission angle {}°",
             c.linkage_type.name(),
             significant(c.error.rms, 4),
             significant(c.error.max, 4),
             c.error.max_at,
+            words::angle_errors(c).map_or(String::new(), |said| format!(", {said}")),
             significant(c.transmission_deg.worst, 3)
         )
     };

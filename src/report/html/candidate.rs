@@ -80,13 +80,24 @@ fn figures(record: &Record, c: &Candidate) -> Markup {
     let unit = words::unit_suffix(record);
     let length = |value: f64| html! { (minus(&significant(value, 4))) small { (unit) } };
     let (class, verdict) = if c.accepted { ("good", "accepted") } else { ("bad", "not accepted") };
-    page::figures([
+    let noun = record.problem.resolved.task.noun();
+    let mut list = vec![
         ("rms error", length(c.error.rms)),
-        ("largest error", html! { (length(c.error.max)) " " small { "at point " (c.error.max_at) } }),
+        ("largest error", html! { (length(c.error.max)) " " small { "at " (noun) " " (c.error.max_at) } }),
+    ];
+    if let Some(angle) = &c.error.angle {
+        let largest = html! {
+            (significant(angle.max_deg, 4)) "° " small { "at " (noun) " " (angle.max_at) }
+        };
+        list.push(("rms angle error", html! { (significant(angle.rms_deg, 4)) "°" }));
+        list.push(("largest angle error", largest));
+    }
+    list.extend([
         ("worst transmission angle", html! { (significant(c.transmission_deg.worst, 4)) "°" }),
         ("longest to shortest link", html! { (significant(c.link_ratio, 4)) }),
         ("verdict", html! { span class=(class) { (verdict) } }),
-    ])
+    ]);
+    page::figures(list)
 }
 
 fn warnings(c: &Candidate) -> Markup {

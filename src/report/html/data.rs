@@ -42,6 +42,14 @@ struct Target {
     closed: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     tolerance: Option<Vec<f64>>,
+    /// The word for one of them, if they are no points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    noun: Option<&'static str>,
+    /// The angles of the body of a motion, in degrees; null where only the place counts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    angle_deg: Option<Vec<Option<f64>>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tolerance_deg: Option<Vec<f64>>,
 }
 
 /// A linkage that can be played.
@@ -55,6 +63,9 @@ struct Mechanism<'a> {
     name: String,
     linkage: &'a FourBar,
     drive: Drive,
+    /// The angle from C -> D to the body's x axis, in degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame_deg: Option<f64>,
     /// The crank angle at each point, in degrees.
     crank_deg: Vec<f64>,
     /// The assembly at each point; absent if all are equal to that of the drive.
@@ -76,7 +87,9 @@ impl<'a> Data<'a> {
         let path = &record.problem.resolved.task;
         let chosen = chosen(record);
         let of_candidate = |key, name, c: &'a Candidate| {
-            Mechanism::new(key, name, (&c.linkage, &c.crank_deg, &c.t1_at), Some(c.error.max_at), &chosen)
+            let passed = (&c.linkage, c.crank_deg.as_slice(), c.t1_at.as_slice());
+            let mechanism = Mechanism::new(key, name, passed, Some(c.error.max_at), &chosen);
+            Mechanism { frame_deg: c.frame_deg, ..mechanism }
         };
         let mut mechanisms = Vec::new();
         for (c, i) in record.candidates.iter().zip(1..) {
@@ -96,6 +109,7 @@ impl<'a> Data<'a> {
         }
         let pick =
             |values: &Vec<f64>| chosen.iter().map(|i| values.get(*i).copied().unwrap_or(0.0)).collect();
+        let body = path.body.as_ref();
         let held = path.points.len() + path.raw.as_ref().map_or(0, |raw| raw.points.len());
         Data {
             unit: record.problem.unit.map(crate::mechanism::Unit::label),
@@ -104,6 +118,10 @@ impl<'a> Data<'a> {
                 numbers: (chosen.len() < path.points.len()).then(|| chosen.clone()),
                 closed: path.closed,
                 tolerance: path.tolerance.as_ref().map(pick),
+                noun: body.map(|_| path.noun()),
+                angle_deg: body
+                    .map(|body| chosen.iter().map(|i| body.angle_deg.get(*i).copied().flatten()).collect()),
+                tolerance_deg: body.and_then(|body| body.tolerance_deg.as_ref()).map(pick),
             },
             transmission_deg_min: record.problem.resolved.require.transmission_deg_min,
             first: first_key(record, shown),
@@ -132,6 +150,7 @@ impl<'a> Mechanism<'a> {
             name,
             linkage,
             drive,
+            frame_deg: None,
             crank_deg: there.iter().map(|i| crank_deg[*i]).collect(),
             t1_at: (!same).then_some(t1),
             worst,

@@ -24,7 +24,17 @@ pub(super) fn dimensions(record: &Record, c: &Candidate, short: &str) -> Markup 
     let text = format!(
         "Ground AB {ground}{unit}; P lies {along}{unit} along and {across}{unit} across from C to D (positive: to the left).",
     );
-    html! { (block(&named(record, short), record.problem.unit, &c.linkage)) (paragraph("notes", &text)) }
+    let body = c.frame_deg.map(|frame_deg| {
+        format!(
+            "The body: P is its origin; its x axis lies {}° from the line from C to D (positive: counter-clockwise).",
+            minus(&significant(frame_deg, 6))
+        )
+    });
+    html! {
+        (block(&named(record, short), record.problem.unit, &c.linkage))
+        (paragraph("notes", &text))
+        @if let Some(body) = body { (paragraph("notes", &body)) }
+    }
 }
 
 /// Returns the dimensions of the alternatives, folded away.

@@ -11,11 +11,13 @@ use maud::Markup;
 
 /// Returns the linkage's mobility and its motion along the points, as a list.
 pub(super) fn mobility(record: &Record, c: &Candidate) -> Markup {
+    let task = &record.problem.resolved.task;
+    let noun = task.noun();
     let mut said = vec![of_type(c), range(c)];
-    said.extend(table::motion(c).map(|motion| format!("Along the points: {motion}.")));
+    said.extend(table::motion(c).map(|motion| format!("Along the {noun}s: {motion}.")));
     said.push(transmission(c));
     if c.defects.is_empty() {
-        said.push("No defect: the points are passed in order, on one circuit and on one branch.".to_owned());
+        said.push(format!("No defect: the {noun}s are passed in order, on one circuit and on one branch."));
     }
     for defect in &c.defects {
         let forbidden = record.problem.resolved.require.forbids(defect);
@@ -23,7 +25,7 @@ pub(super) fn mobility(record: &Record, c: &Candidate) -> Markup {
         said.push(format!(
             "{} defect ({verdict}): {}.",
             capitalised(defect.name()),
-            words::of_defect(defect)
+            words::of_defect(task, defect)
         ));
     }
     if let Some(proof) = c.certified {

@@ -12,6 +12,7 @@
 //! exact.rs        every linkage through nine points
 //! proof.rs        the certificate, and the number of times the best answer was found
 //! front.rs        the page of a front, with its scatter plot in scatter.rs
+//! player/body.mjs the body of a motion over the player's drawing
 //! player/*.mjs    position solver, drawing, charts, transport: independent of this page
 //! report.mjs, report.css    the page around the player
 //! ```
@@ -54,6 +55,8 @@ pub(super) const PLAYER: [&str; 7] = [
     include_str!("player/chart.mjs"),
     include_str!("player/player.mjs"),
 ];
+/// The modules of the report alone: the body of a motion, the page.
+const REPORT: [&str; 2] = [include_str!("player/body.mjs"), include_str!("report.mjs")];
 /// The style sheet of the player, with its colours.
 pub(super) const PLAYER_STYLE: &str = include_str!("player/player.css");
 
@@ -90,8 +93,7 @@ pub fn report_with_drawings(record: &Record, first: usize, drawings: &[&str], ex
 }
 
 fn page_with_drawings(record: &Record, shown: Shown, drawings: &[&str], extent: Extent) -> String {
-    let mut modules = PLAYER.to_vec();
-    modules.push(include_str!("report.mjs"));
+    let modules = [&PLAYER[..], &REPORT[..]].concat();
     page::Page {
         title: &format!("{}: linkages", super::words::problem_name(record)),
         styles: &[PLAYER_STYLE, include_str!("report.css")],
@@ -152,7 +154,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     fn all_modules() -> Vec<&'static str> {
-        PLAYER.into_iter().chain([include_str!("report.mjs")]).collect()
+        PLAYER.into_iter().chain(REPORT).collect()
     }
 
     /// The modules are joined into one scope, in which two declarations of one name would silently shadow each other.

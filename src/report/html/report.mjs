@@ -1,5 +1,7 @@
 // The report's page: its player, its choice of candidates, its tables.
 
+import { anglesOf, Bodies } from "./player/body.mjs";
+import { ErrorChart } from "./player/chart.mjs";
 import { Player } from "./player/player.mjs";
 import { element, figure } from "./player/svg.mjs";
 
@@ -17,11 +19,32 @@ function begin() {
   const live = document.getElementById("live");
   document.documentElement.classList.add("live");
   live.hidden = false;
-  const player = new Player(document.getElementById("stage"), document.getElementById("charts"), {
+  const charts = document.getElementById("charts");
+  const bodies = data.target.angle_deg ? new Bodies(data.target) : null;
+  /** @type {ErrorChart | undefined} */
+  let turned;
+  const player = new Player(document.getElementById("stage"), charts, {
     unit: data.unit,
     target: data.target,
     transmissionMin: data.transmission_deg_min,
+    onPose: (stage, joints) => {
+      bodies?.draw(stage, joints);
+      turned?.at(stage.q);
+    },
   });
+  if (bodies) {
+    turned = new ErrorChart(charts, {
+      title: "Error of the body's angle",
+      noun: data.target.noun,
+      height: 128,
+      unit: "deg",
+      onPick: (point) => {
+        player.pause();
+        if (point.place !== null) player.moveTo(point.place);
+      },
+    });
+    player.errors.figure.after(turned.figure);
+  }
   const radios = new Map();
   const choices = document.getElementById("choices");
   for (const article of articles) {
@@ -38,6 +61,9 @@ function begin() {
     const mechanism = byKey.get(key);
     if (!mechanism) return;
     player.show(mechanism);
+    const angles = bodies ? anglesOf(player.cycle, data.target) : null;
+    if (angles) turned?.show(/** @type {any} */ (angles));
+    turned?.at(player.q);
     const owner = ownerOf(key);
     const shown = byKey.has(owner) && radios.has(owner) ? owner : current;
     current = shown;
@@ -48,7 +74,7 @@ function begin() {
     for (const button of all("button[data-choose]"))
       button.setAttribute("aria-pressed", String(button.dataset.choose === key));
     played.textContent = key === owner && radios.has(key) ? "" : `Shown now: ${mechanism.name}`;
-    showPoints(player.cycle);
+    showPoints(player.cycle, angles);
   }
   let current = data.first;
 
@@ -58,7 +84,11 @@ function begin() {
   for (const article of articles) addCopying(article);
   for (const code of all("#reproduce pre")) code.after(copyButton(() => code.textContent, "Copy"));
   listenToKeys(player, choose);
-  for (const name of ["beforeprint", "afterprint"]) addEventListener(name, () => player.layOut());
+  for (const name of ["beforeprint", "afterprint"])
+    addEventListener(name, () => {
+      player.layOut();
+      turned?.draw();
+    });
   const asked = decodeURIComponent(location.hash.slice(1));
   choose(byKey.has(asked) ? asked : byKey.has(data.first) ? data.first : data.mechanisms[0].key);
 }
@@ -166,19 +196,23 @@ function listenToKeys(player, choose) {
   });
 }
 
-/** The table of points: desired, generated, error. */
-function showPoints(cycle) {
+/** The table of points: desired, generated, error; in a motion those of the body's angle too. */
+function showPoints(cycle, angles) {
   const place = document.querySelector("#points tbody");
   if (!place) return;
   const cell = (text) => element("td", { class: "n" }, [text]);
   const worst = cycle.worstPoint();
   place.replaceChildren(
-    ...cycle.points.map((point) => {
+    ...cycle.points.map((point, i) => {
       const [x, y] = point.reached ?? [NaN, NaN];
       const row = element("tr", {}, [
         element("th", { scope: "row", class: "n" }, [String(point.number)]),
         ...[point.crankDeg, ...point.target, x, y, point.error].map((value) => cell(figure(value, 6))),
       ]);
+      if (angles) {
+        const { wanted, reached, error } = angles.points[i];
+        row.append(...[wanted ?? NaN, reached, error].map((value) => cell(figure(value, 6))));
+      }
       row.classList.toggle("worst", point === worst);
       return row;
     }),

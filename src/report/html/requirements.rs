@@ -65,7 +65,7 @@ fn row(record: &Record, c: &Candidate, r: &Requirement) -> Markup {
     let cost = price::clause(record, c, &r.name);
     html! {
         tr class=[cost.is_some().then_some("has-cost")] {
-            th scope="row" { (label(&r.name)) }
+            th scope="row" { (words::of_targets(&record.problem.resolved.task, &label(&r.name))) }
             td.n { (asked) }
             td.n { (has) }
             td class=(colour) { (verdict) }

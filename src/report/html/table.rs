@@ -3,7 +3,7 @@
 use super::data::candidate_key;
 use super::extras::{Shown, extras};
 use super::page::{paragraph, section, still};
-use crate::record::{Candidate, Record};
+use crate::record::{AngleErrorRecord, Candidate, Record};
 use crate::report::text::{NO_NUMBER, significant};
 use crate::report::words;
 use crate::task::spec::{Measure, TransmissionOver};
@@ -120,15 +120,24 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         );
     }
     let measure = record.problem.resolved.measure();
-    let ranks = words::minimised(measure);
-    let columns: [Column<&Candidate>; 12] = [
+    let task = &record.problem.resolved.task;
+    let ranks = words::minimised_in(record);
+    let at = words::of_targets(
+        task,
+        if measure == Measure::LargestPart { "deviation at point" } else { "at point" },
+    );
+    let of_angle = |c: &Candidate, of: fn(&AngleErrorRecord) -> f64| {
+        c.error.angle.as_ref().map_or(Cell::words(NO_NUMBER), |angle| Cell::degrees(of(angle)))
+    };
+    let [angle_rms, angle_max] = ["angle rms", "angle largest"];
+    let all: [Column<&Candidate>; 14] = [
         ("rms error", true, &|c| Cell::figure(c.error.rms, 4)),
         ("largest", true, &|c| Cell::figure(c.error.max, 4)),
-        (if measure == Measure::LargestPart { "deviation at point" } else { "at point" }, true, &|c| {
-            Cell::whole(crate::report::table::worst_at(record, c))
-        }),
-        (ranks.map_or("sum of squares", |(head, _)| head), true, &|c| {
-            Cell::figure(if measure == Measure::Sum { c.error.sum_sq } else { c.error.objective }, 5)
+        (&at, true, &|c| Cell::whole(crate::report::table::worst_at(record, c))),
+        (angle_rms, true, &|c| of_angle(c, |angle| angle.rms_deg)),
+        (angle_max, true, &|c| of_angle(c, |angle| angle.max_deg)),
+        (ranks.as_ref().map_or("sum of squares", |(head, _)| head), true, &|c| {
+            Cell::figure(if ranks.is_none() { c.error.sum_sq } else { c.error.objective }, 5)
         }),
         ("to curve", true, &|c| Cell::figure(c.error.to_curve.rms, 4)),
         ("type", false, &|c| Cell::words(c.linkage_type.name())),
@@ -139,6 +148,9 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         ("defects", false, &|c| Cell::words(defects(c))),
         ("verdict", false, &|c| Cell::verdict(verdict(record, c), c.accepted)),
     ];
+    let of_motion = task.body.is_some();
+    let is_shown = |column: &&Column<&Candidate>| of_motion || ![angle_rms, angle_max].contains(&column.0);
+    let columns: Vec<Column<&Candidate>> = all.iter().filter(is_shown).copied().collect();
     let ranked =
         record.candidates.iter().enumerate().map(|(i, c)| (c, candidate_key(i), (i + 1).to_string()));
     // After all others when sorted by rank.
@@ -152,9 +164,15 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         "in" => "Lengths in inches. ".to_owned(),
         unit => format!("Lengths in {unit}. "),
     };
-    let first = ranks.map_or(String::new(), |(_, sentence)| format!("{sentence} "));
-    let notes = "to curve: rms distance to the whole coupler curve, whatever the timing. transmission: the worst angle, 0 to \
-                 90°, over the crank's full turn or the part used. link ratio: longest to shortest link. Points count from 0.";
+    let first = ranks.as_ref().map_or(String::new(), |(_, sentence)| format!("{sentence} "));
+    let notes = if of_motion {
+        "rms error, largest: of the place. angle: of the body. to curve: rms distance of the poses' places to the whole curve \
+         of the body's point. transmission: the worst angle, 0 to 90°, over the crank's full turn or the part used. link \
+         ratio: longest to shortest link. Poses count from 0."
+    } else {
+        "to curve: rms distance to the whole coupler curve, whatever the timing. transmission: the worst angle, 0 to \
+                 90°, over the crank's full turn or the part used. link ratio: longest to shortest link. Points count from 0."
+    };
     let said = words::fewer(record).into_iter().chain(crate::report::beside::mirrored(record));
     let inside = html! {
         (tabulated(("Candidates", "candidates wide tight"), ("#", true), &columns, rows))

@@ -142,7 +142,9 @@ impl RequirementKind {
 
     /// Returns the kind with this key in a problem file.
     pub fn with_key(key: &str) -> Option<RequirementKind> {
-        Self::IN_CONFLICTS.into_iter().find(|kind| kind.definition().key == key)
+        const OF_A_MOTION: &str = "task.motion.tolerance";
+        let found = Self::IN_CONFLICTS.into_iter().find(|kind| kind.definition().key == key);
+        found.or((key == OF_A_MOTION).then_some(Self::Tolerance))
     }
 
     /// Returns its name in a record: the key in its table.

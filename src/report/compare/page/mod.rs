@@ -47,7 +47,10 @@ impl Comparison {
     pub fn html(&self) -> String {
         let title = self.title();
         let points = self.rows.first().filter(|_| self.same_target());
-        let points = points.map(|row| format!("{} target points; ", row.entry.target.len()));
+        let points = points.map(|row| {
+            let noun = if row.entry.body.is_some() { "poses" } else { "points" };
+            format!("{} target {noun}; ", row.entry.target.len())
+        });
         let notes = self.notes();
         let body = html! {
             main {
@@ -82,7 +85,7 @@ impl Comparison {
     fn curves(&self) -> Markup {
         let overlay = Overlay::new(self);
         let description = format!("The coupler curves over the target. {}", self.description());
-        let target = self.same_target().then(|| "Circles: the target, its point 0 filled.".to_owned());
+        let target = self.same_target().then(|| format!("{}.", self.circles("the target")));
         let caption: Vec<String> = target.into_iter().chain(overlay.remarks(self)).collect();
         html! {
             section id="curves" {
@@ -144,13 +147,14 @@ impl Comparison {
             [_] => Vec::new(),
             several => several.iter().map(|key| format!("rank by {}", key.name())).collect(),
         };
+        let at = if self.has_angles() { "at which pose" } else { "at which point" };
         let mut columns = vec![
             Column::new("behind", |_, row| Cell::number(row.behind_percent, tables::behind(row)))
                 .said("behind the best, per cent"),
             Column::figure(self.first_head("sum of squares"), self.first_figure(), 4),
             Column::figure("rms", SortKey::Rms, 4),
             Column::figure("max", SortKey::Max, 4),
-            Column::new("at", |_, row| Cell::whole(row.entry.candidate.error.max_at)).said("at which point"),
+            Column::new("at", |_, row| Cell::whole(row.entry.candidate.error.max_at)).said(at),
             Column::figure("to curve", SortKey::ToCurve, 4),
             Column::figure("transm.", SortKey::Transmission, 3).said("worst transmission angle"),
             Column::figure("link ratio", SortKey::LinkRatio, 3),
@@ -159,6 +163,14 @@ impl Comparison {
             Column::new("type", |_, row| Cell::words(row.entry.candidate.linkage_type.name())),
             Column::new("accepted", |_, row| Cell::words(verdict(&row.entry.candidate))),
         ];
+        if self.has_angles() {
+            const AFTER: usize = 5;
+            let of_angles = [
+                Column::figure("angle", SortKey::AngleRms, 3).said("rms error of the body's angle"),
+                Column::figure("angle max", SortKey::AngleMax, 3).said("largest error of the body's angle"),
+            ];
+            columns.splice(AFTER..AFTER, of_angles);
+        }
         let rank = |(k, head)| Column::new(head, move |_, row| Cell::whole(row.ranks[k]));
         columns.extend(ranks.iter().map(String::as_str).enumerate().map(rank));
         self.sorted(("figures", "Figures"), "Figures", &columns, &(front + &unit))
@@ -166,16 +178,9 @@ impl Comparison {
 
     fn difference_section(&self) -> Option<Markup> {
         let reference = self.reference_label()?;
-        let heads = [
-            self.first_head("sum of squares"),
-            "rms",
-            "max",
-            "to curve",
-            "transm.",
-            "link ratio",
-            "size",
-            "extent",
-        ];
+        let mut heads = vec![self.first_head("sum of squares"), "rms", "max"];
+        heads.extend(if self.has_angles() { &["angle", "angle max"][..] } else { &["to curve"] });
+        heads.extend(["transm.", "link ratio", "size", "extent"]);
         let column = |(head, key): (_, SortKey)| {
             Column::new(head, move |place, row| {
                 let percent = row.difference_percent.get(key as usize).copied().flatten();

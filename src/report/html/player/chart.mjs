@@ -233,7 +233,7 @@ export class CycleChart extends Chart {
 
 /** The error at each point, as stems. */
 export class ErrorChart extends Chart {
-  /** @param {HTMLElement} place @param {{title: string, height: number, unit: string | null, onPick: (point: any) => void}} options */
+  /** @param {HTMLElement} place @param {{title: string, noun: string, height: number, unit: string | null, onPick: (point: any) => void}} options */
   constructor(place, options) {
     super(place, options);
     this.options = options;
@@ -295,10 +295,11 @@ export class ErrorChart extends Chart {
     this.ring = shape("circle", { class: "cursor-ring", r: 6.5 });
     this.svg.replaceChildren(...parts, this.ring);
     const unit = this.options.unit ? ` ${this.options.unit}` : "";
+    const { noun } = this.options;
     this.describe(
       worst
-        ? `Error at the ${points.length} points: the largest is ${figure(worst.error, 4)}${unit} at point ${worst.number}`
-        : "Error at the points: nothing to show",
+        ? `Error at the ${points.length} ${noun}s: the largest is ${figure(worst.error, 4)}${unit} at ${noun} ${worst.number}`
+        : `Error at the ${noun}s: nothing to show`,
     );
     if (this.q !== undefined) this.at(this.q);
   }
@@ -312,7 +313,7 @@ export class ErrorChart extends Chart {
     this.ring.classList.toggle("absent", i < 0 || !Number.isFinite(near.error));
     if (i < 0) return;
     setAll(this.ring, { cx: px(this.xOf(i)), cy: px(this.y(near.error, 0, this.highest())) });
-    this.reading.textContent = `point ${near.number}: ${figure(near.error, 4)}${this.options.unit ? ` ${this.options.unit}` : ""}`;
+    this.reading.textContent = `${this.options.noun} ${near.number}: ${figure(near.error, 4)}${this.options.unit ? ` ${this.options.unit}` : ""}`;
   }
 
   highest() {

@@ -3,7 +3,7 @@
 import { inputAt, isCyclic, placeOf, rangeOf, usedOf } from "./drive.mjs";
 import { kernelOf, motionAt, positionAt, transmissionAngle } from "./kinematics.mjs";
 
-/** @typedef {{key: string, name: string, linkage: import("./kinematics.mjs").Linkage, drive: import("./drive.mjs").Drive, crank_deg: number[], t1_at?: number[], worst?: number}} Mechanism */
+/** @typedef {{key: string, name: string, linkage: import("./kinematics.mjs").Linkage, drive: import("./drive.mjs").Drive, crank_deg: number[], t1_at?: number[], frame_deg?: number, worst?: number}} Mechanism */
 /** @typedef {{number: number, target: [number, number], reached: [number, number] | null, error: number, crankDeg: number, place: number | null, tolerance: number | null}} PathPoint */
 /** @typedef {{q: number, joints: import("./kinematics.mjs").Joints, mu: number, v: [number, number] | null, a: [number, number] | null}} Sample */
 

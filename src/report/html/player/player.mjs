@@ -30,7 +30,7 @@ export class Player {
   /**
    * @param {HTMLElement} stagePlace where the drawing and the transport go
    * @param {HTMLElement} chartPlace where the charts go
-   * @param {{unit: string | null, target: any, transmissionMin: number | null}} options
+   * @param {{unit: string | null, target: any, transmissionMin: number | null, onPose?: (stage: any, joints: any) => void}} options
    */
   constructor(stagePlace, chartPlace, options) {
     this.options = options;
@@ -40,9 +40,12 @@ export class Player {
     this.sense = 1;
     this.speed = 1;
     this.rpm = 60;
-    const unit = options.unit;
+    const { unit, onPose } = options;
+    /** The word for one of the target's points. */
+    this.noun = options.target.noun ?? "point";
     this.stage = new Stage(stagePlace, {
       unit,
+      onPose,
       onDrag: (crankDeg) => this.dragTo(crankDeg),
       onKey: (step) => this.moveTo(this.q + step * this.keySense()),
     });
@@ -52,8 +55,9 @@ export class Player {
 
   makeTransport(place) {
     const play = signButton("Play", PLAY);
-    const back = signButton("Point before", BACK);
-    const on = signButton("Next point", ON);
+    const { noun } = this;
+    const back = signButton(`${noun[0].toUpperCase()}${noun.slice(1)} before`, BACK);
+    const on = signButton(`Next ${noun}`, ON);
     this.play = play;
     play.button.classList.add("play");
     play.button.addEventListener("click", () => this.toggle());
@@ -119,7 +123,8 @@ export class Player {
       });
     };
     this.errors = new ErrorChart(place, {
-      title: "Error at the points",
+      title: `Error at the ${this.noun}s`,
+      noun: this.noun,
       height: 128,
       unit,
       onPick: (point) => {
@@ -209,7 +214,7 @@ export class Player {
     const P = sample?.joints.P;
     const near = this.cycle.nearestPoint(this.q);
     this.reading.textContent = P
-      ? `crank ${crank}   P (${figure(P[0], 5)}, ${figure(P[1], 5)})${near ? `   nearest point ${near.number}` : ""}`
+      ? `crank ${crank}   P (${figure(P[0], 5)}, ${figure(P[1], 5)})${near ? `   nearest ${this.noun} ${near.number}` : ""}`
       : `crank ${crank}   the loop is open here`;
     setAll(this.scrub, { "aria-valuetext": `crank at ${crank}` });
   }

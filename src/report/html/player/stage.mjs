@@ -98,7 +98,7 @@ class Labels {
 export class Stage {
   /**
    * @param {HTMLElement} place
-   * @param {{unit: string | null, onDrag: (crankDeg: number) => void, onKey: (step: number) => void}} options
+   * @param {{unit: string | null, onDrag: (crankDeg: number) => void, onKey: (step: number) => void, onPose?: (stage: any, joints: any) => void}} options `onPose` draws more over the linkage
    */
   constructor(place, options) {
     this.place = place;
@@ -356,6 +356,7 @@ export class Stage {
     this.q = q;
     if (!this.toPixel) return;
     const joints = this.cycle.at(q);
+    this.options.onPose?.(this, joints);
     this.moving.classList.toggle("absent", !joints);
     if (!joints) return;
     const { A, B } = this.cycle.mechanism.linkage;
