@@ -496,3 +496,39 @@ fn a_motion_past_a_toggle_is_split_there() {
         assert!(all.value <= one.value + 1e-12 * TAU);
     }
 }
+
+#[test]
+fn a_motor_widens_the_plates_at_its_holes_and_stands_at_a() {
+    let l = FourBar::with_coupler_offset(
+        [Complex::new(0.0, 0.0), Complex::new(80.0, 0.0)],
+        [20.0, 70.0, 50.0],
+        Complex::new(35.0, 30.0),
+        AssemblyMode::Plus,
+    )
+    .expect("a linkage");
+    let sweep = Sweep::of_linkage(&l).expect("joined");
+    let tolerance = 4.0 * MARGIN * l.longest_link();
+    let pins = Build::new(4.0, 3.0);
+    let motor = pins.with_motor(Some(6.0), Some(20.0));
+    let [plain, wide] = [pins, motor].map(|build| layering(&sweep, build).expect("it closes"));
+    // Each distance less by what the two parts have become wider: 1 of the crank and its shaft, 8 of the ground.
+    let wider = |link| match link {
+        Link::Ground => 8.0,
+        Link::Crank => 1.0,
+        Link::Coupler | Link::Follower => 0.0,
+    };
+    let shaft = |pin| if pin == Joint::A { 1.0 } else { 0.0 };
+    for (one, other) in plain.free_pairs.iter().zip(&wide.free_pairs) {
+        let more: f64 = one.plates.iter().map(|link| wider(*link)).sum();
+        assert!((one.closest.value - other.closest.value - more).abs() < tolerance, "{:?}", one.plates);
+    }
+    for (one, other) in plain.pins_plates.iter().zip(&wide.pins_plates) {
+        let more = wider(one.plate) + shaft(one.pin);
+        assert!((one.closest.value - other.closest.value - more).abs() < tolerance, "{one:?} {other:?}");
+    }
+    // One of the two alone: the boss is as the shaft, and a smaller shaft narrows no plate.
+    let thin = pins.with_motor(Some(2.0), None);
+    assert_eq!(thin.motor.map(|motor| motor.boss_radius), Some(1.0));
+    assert_eq!((thin.radius_of(Link::Crank), thin.radius_at(Joint::A)), (5.0, 1.0));
+    assert_eq!(pins.with_motor(None, None), pins);
+}
