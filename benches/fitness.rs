@@ -12,7 +12,7 @@ use linkwright::internals::task::Problem;
 use linkwright::internals::task::forms::fitness::PathFitness;
 use linkwright::internals::task::forms::projection::{Batch, ProjectedFit, Projection};
 use linkwright::internals::task::spec::{
-    DesignSpec, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec,
+    DesignSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -24,10 +24,9 @@ fn problem(n: usize, timed: bool) -> Problem {
         (0..n).map(|i| [2.0 * angle(i).cos() + 0.3 * (2.0 * angle(i)).cos(), angle(i).sin()]).collect();
     let crank_deg = (0..n).map(|i| angle(i).to_degrees()).collect();
     let timing = timed.then_some(TimingSpec { crank_deg, offset: AngleOffset::Free });
-    let path = PathSpec { points, closed: true, weight: None, tolerance: None, timing, raw: None };
-    let task = TaskSpec { path };
+    let task = TaskSpec { timing, ..TaskSpec::path(points, true) };
     let mut design = DesignSpec::default();
-    design.resolve(&task.path.to_task().expect("the target is a path"));
+    design.resolve(&task.to_task().expect("the target is a path"));
     let spec = ProblemSpec { task, design, require: RequireSpec::default(), solve: SolveSpec::default() };
     Problem::new(spec).expect("the target is a path")
 }

@@ -46,7 +46,7 @@ use linkwright::internals::mechanism::LinkageType;
 use linkwright::internals::numbers::arithmetic::streams::{stream, uniform};
 use linkwright::internals::task::Problem;
 use linkwright::internals::task::spec::{
-    DesignSpec, Limits, OnePolicy, OrderPolicy, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec,
+    DesignSpec, Limits, OnePolicy, OrderPolicy, ProblemSpec, RequireSpec, SolveSpec, TaskSpec,
 };
 use random::{ROCKING, TURNING, Traced, bounding_box, noisy, one_of, trace};
 use std::sync::atomic::AtomicBool;
@@ -203,16 +203,7 @@ fn problem(class: &Class, traced: &Traced, points: &[Complex], seed: u64, with: 
     let length = Some(Limits(0.0, longest));
     let offset = Some(Limits(-coupler, coupler));
     ProblemSpec {
-        task: TaskSpec {
-            path: PathSpec {
-                points: points.iter().map(|p| [p.re, p.im]).collect(),
-                closed: class.closed,
-                weight: None,
-                tolerance: None,
-                timing: None,
-                raw: None,
-            },
-        },
+        task: TaskSpec::path(points.iter().map(|p| [p.re, p.im]).collect(), class.closed),
         design: DesignSpec {
             crank_pivot: pivot,
             follower_pivot: pivot,

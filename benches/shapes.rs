@@ -52,7 +52,7 @@ fn error(file: &Path, closed: bool, evenly: bool, (seed, time_limit_s): (u64, f6
     }
     let set: Vec<_> = set.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
     let mut problem = load_any(file, &set).unwrap_or_else(|why| panic!("{}: {why}", file.display()));
-    let points = problem.spec.task.path.points.clone();
+    let points = problem.spec.task.points.clone();
     let require = &mut problem.spec.require;
     require.types = vec![LinkageType::CrankRocker, LinkageType::DoubleCrank];
     require.transmission_deg_min = Some(TRANSMISSION_DEG);

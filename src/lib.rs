@@ -38,11 +38,11 @@
 //! | layer | holds | may use |
 //! |---|---|---|
 //! | `numbers` | packages of their own that use nothing of this one: `arithmetic/` (lanes, double-double numbers, random streams), `optimise/` (least squares, population searches, convex programs), `nine_point/` (all four-bars through nine points, by homotopy continuation), `bound/` (lower bounds by branch and bound), `checker/` (checks the proofs of `bound` independently), `leaves/` (the file format of those proofs) | |
-//! | `mechanism` | what a linkage is and where it is: the [`four_bar`](internals::mechanism::four_bar) (position, gradient, mobility, transmission angle, coupler curve, cognates), the [`chain`](internals::mechanism::chain), their [`analysis`](internals::mechanism::analysis), their [`plates`](internals::mechanism::plates) | numbers |
+//! | `mechanism` | what a linkage is and where it is: the [`four_bar`](internals::mechanism::four_bar) (position, gradient, mobility, transmission angle, coupler curve, cognates), the [`chain`](internals::mechanism::chain), their [`analysis`](internals::mechanism::analysis), the [`dyad`](internals::mechanism::dyad) that guides a body through poses, their [`plates`](internals::mechanism::plates) | numbers |
 //! | `task` | what is wanted: the path, the [`spec`](internals::task::spec) with every key of a problem file, the checked [`Problem`], the [list of requirements](internals::task::requirement), and the task as mathematics in [`forms`](internals::task::forms) (design space, residuals, [rows of the requirements](internals::task::forms::rows)) | numbers, mechanism |
 //! | `record` | the record of a run: what was asked, done and found; its front and its picks | numbers, mechanism, task |
 //! | `judge` | verdicts: the [`referee`](internals::judge::referee) (order, circuit and branch defects), [`assess`](internals::judge::assess) (every figure of a candidate), ranking, warnings, cognates, costs, trade-offs, [`certificate`](internals::judge::certificate), [`practicality`](internals::judge::practicality), and [`verify`](internals::judge::verify), which recomputes a record | numbers, mechanism, task, record |
-//! | `synthesis` | the search: its [`plan`](internals::synthesis::plan), the canonical frame of free timing, starts, the [`atlas`](internals::synthesis::atlas) of coupler curves, searches for prescribed (by [`variable_projection`](internals::synthesis::variable_projection)) and [`free`](internals::synthesis::free) timing, population searches, the [`front`](internals::synthesis::front) and the [`picks`](internals::synthesis::picks) by fits under tightened limits, [`conflicts`](internals::synthesis::conflicts) of requirements, fitting while a target is dragged, rounding lengths to stock sizes; its limits and its cancellation | numbers, mechanism, task, record, judge |
+//! | `synthesis` | the search: its [`plan`](internals::synthesis::plan), the canonical frame of free timing, starts, the [`dyads`](internals::synthesis::dyads) through poses, the [`atlas`](internals::synthesis::atlas) of coupler curves, searches for prescribed (by [`variable_projection`](internals::synthesis::variable_projection)) and [`free`](internals::synthesis::free) timing, population searches, the [`front`](internals::synthesis::front) and the [`picks`](internals::synthesis::picks) by fits under tightened limits, [`conflicts`](internals::synthesis::conflicts) of requirements, fitting while a target is dragged, rounding lengths to stock sizes; its limits and its cancellation | numbers, mechanism, task, record, judge |
 //! | `files` | file formats: problem, points, linkage and drawing files are read, with errors that point at their place; schemas, templates | numbers, mechanism, task, record |
 //! | `report` | what a person sees, pure functions of records and analyses: text, tables, drawings, the [page](internals::report::html), the [comparison](internals::report::compare), and files to build from in [`export`](internals::report::export) (DXF, STL, ..) | mechanism, task, record, judge, synthesis, files |
 //! | `app` | entry points: a job in, a record out ([`run`](internals::app::job::run)), folders of results and checkpoints, the [`suite`](internals::app::suite), [sweeps](internals::app::sweep), the command line in `cli/` (Ctrl-C, exit codes), the local page in `studio/` | everything |
@@ -81,14 +81,13 @@ pub use report::export::{
 };
 pub use report::html::report_html;
 pub use synthesis::{Observer, Progress};
-pub use task::{AngleOffset, Defect, PathOptions, PathTask, Problem, ProblemBuilder, TaskError, Timing};
+pub use task::{AngleOffset, Defect, Problem, ProblemBuilder, Task, TaskError, TaskOptions, Timing};
 
 /// Problems as data: every key of a problem file.
 pub mod spec {
     pub use crate::task::spec::{
         CertifySpec, ClosingPolicy, DesignSpec, DirectionPolicy, Limits, Method, Objective, OnePolicy,
-        OrderPolicy, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec, TransmissionOver,
-        Variables,
+        OrderPolicy, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec, TransmissionOver, Variables,
     };
 }
 

@@ -111,8 +111,8 @@ fn pooled(problem: &Problem, aim: Option<LinkageType>, pools: &[Pool]) -> Option
         let mean = pool.members.iter().map(|&j| all[j]).sum::<Complex>() / pool.members.len() as f64;
         [mean.re, mean.im]
     };
-    spec.task.path.points = pools.iter().map(mean).collect();
-    spec.task.path.weight = Some(pools.iter().map(|p| p.members.len() as f64).collect());
+    spec.task.points = pools.iter().map(mean).collect();
+    spec.task.weight = Some(pools.iter().map(|p| p.members.len() as f64).collect());
     Problem::new(spec).ok()
 }
 

@@ -116,7 +116,7 @@ impl Problem {
 
     /// Returns the points of the target.
     fn points(&self) -> Vec<[f64; 2]> {
-        self.file.spec.task.path.points.clone()
+        self.file.spec.task.points.clone()
     }
 
     /// Every key with its default filled in.
@@ -161,6 +161,6 @@ impl Problem {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Problem {:?}: {} points>", self.file.name, self.file.spec.task.path.points.len())
+        format!("<Problem {:?}: {} points>", self.file.name, self.file.spec.task.points.len())
     }
 }

@@ -85,13 +85,13 @@ impl Target {
     /// Returns whether points, timing and unit are the same, so that positions on one target are positions on the
     /// other.
     fn is(&self, other: &Target) -> bool {
-        let (one, other_path) = (&self.problem.spec().task.path, &other.problem.spec().task.path);
+        let (one, other_path) = (&self.problem.spec().task, &other.problem.spec().task);
         let one_unit = self.unit.zip(other.unit).is_none_or(|(one, other)| one == other);
         one_unit && same_points(&one.points, &other_path.points) && one.timing == other_path.timing
     }
 
     fn entry(&self, label: String, candidate: Candidate, unit: Option<Unit>, of_run: bool) -> Entry {
-        let path = &self.problem.spec().task.path;
+        let path = &self.problem.spec().task;
         Entry {
             label,
             extent: Some(extent(&self.problem, &candidate)),

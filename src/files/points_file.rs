@@ -1,4 +1,5 @@
-//! Points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`; `#` comments.
+//! Points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`, of poses
+//! also `angle_deg` and `tolerance_deg`; `#` comments.
 
 use crate::files::diagnostic::{Checked, Diagnostic, counted, quoted};
 use crate::files::input_text;
@@ -10,7 +11,9 @@ use std::path::Path;
 pub use crate::task::spec::MAX_POINTS;
 
 /// The columns that are read.
-const COLUMNS: [&str; 5] = ["x", "y", "crank_deg", "weight", "tolerance"];
+const COLUMNS: [&str; 7] = ["x", "y", "crank_deg", "weight", "tolerance", "angle_deg", "tolerance_deg"];
+/// The column whose cells may be empty.
+const ANGLE: usize = 5;
 
 /// The points of a CSV file and their other columns.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +30,10 @@ pub struct PointsFile {
     pub weight: Option<Vec<f64>>,
     /// The largest error accepted at each point.
     pub tolerance: Option<Vec<f64>>,
+    /// The angle of a body at each point, in degrees; `None` where the cell is empty.
+    pub angle_deg: Option<Vec<Option<f64>>>,
+    /// The largest error of that angle accepted at each point, in degrees.
+    pub tolerance_deg: Option<Vec<f64>>,
     /// The place of each point's row in the text.
     pub rows: Vec<Range<usize>>,
     /// Warnings about ignored columns.
@@ -54,6 +61,7 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
     };
     let columns = Columns::of(&table, &header)?;
     let mut values = columns.place.map(|place| place.map(|_| Vec::new()));
+    let mut angles = columns.place[ANGLE].map(|_| Vec::new());
     let mut rows = Vec::new();
     while let Some(row) = table.next_row()? {
         // Spreadsheets leave empty cells at the end, and leave out cells of columns that are not read.
@@ -66,12 +74,18 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
             let help = "leave out points: a few hundred describe any path that a four-bar can trace";
             return Err(table.at(row.span, format!("there are more than {MAX_POINTS} points"), help));
         }
+        if let (Some(place), Some(list)) = (columns.place[ANGLE], &mut angles) {
+            let is_empty = row.cells.get(place).is_none_or(String::is_empty);
+            list.push(if is_empty { None } else { Some(table.number(&row, place, COLUMNS[ANGLE])?) });
+        }
         for ((name, place), list) in COLUMNS.iter().zip(columns.place).zip(&mut values) {
-            let (Some(place), Some(list)) = (place, list) else { continue };
+            let (Some(place), Some(list)) = (place.filter(|_| *name != COLUMNS[ANGLE]), list) else {
+                continue;
+            };
             let value = table.number(&row, place, name)?;
             let remedy = match *name {
                 "weight" if value <= 0.0 => "a weight is positive; leave the row out to ignore a point",
-                "tolerance" if value < 0.0 => "a tolerance is 0 or more",
+                "tolerance" | "tolerance_deg" if value < 0.0 => "a tolerance is 0 or more",
                 _ => {
                     list.push(value);
                     continue;
@@ -85,10 +99,22 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
         let help = "write one point a line, such as 1.5,2";
         return Err(table.at(header.span, "there are no points under the header", help));
     }
-    let [x, y, crank_deg, weight, tolerance] = values;
+    let [x, y, crank_deg, weight, tolerance, _, tolerance_deg] = values;
     let points = x.into_iter().flatten().zip(y.into_iter().flatten()).map(|(x, y)| [x, y]).collect();
     let (file, text) = (file.to_owned(), text.to_owned());
-    Ok(PointsFile { file, text, points, crank_deg, weight, tolerance, rows, warnings: columns.warnings })
+    let (angle_deg, warnings) = (angles, columns.warnings);
+    Ok(PointsFile {
+        file,
+        text,
+        points,
+        crank_deg,
+        weight,
+        tolerance,
+        angle_deg,
+        tolerance_deg,
+        rows,
+        warnings,
+    })
 }
 
 /// A row: its cells, trimmed, and its place in the text.
@@ -255,7 +281,7 @@ fn is_decimal_comma(cell: &str) -> bool {
 
 /// The places of the columns in a row.
 struct Columns {
-    place: [Option<usize>; 5],
+    place: [Option<usize>; 7],
     warnings: Vec<Diagnostic>,
 }
 
@@ -273,7 +299,7 @@ impl Columns {
         if header.cells.iter().all(|c| c.is_empty() || c.parse::<f64>().is_ok() || is_decimal_comma(c)) {
             return refuse("the header is missing: the first row holds numbers", "write a first line x,y");
         }
-        let mut columns = Columns { place: [None; 5], warnings: Vec::new() };
+        let mut columns = Columns { place: [None; 7], warnings: Vec::new() };
         let mut extra = Vec::new();
         for (i, cell) in header.cells.iter().enumerate() {
             let name = cell.to_lowercase();

@@ -18,8 +18,10 @@ pub(crate) struct TomlText<'a> {
 }
 
 /// The tables of `[task]` that are known but not supported yet.
-const TASKS_TO_COME: [&str; 2] = ["motion", "function"];
-const ONLY_PATH: &str = "a problem has one task, and [task.path] is the only kind that is supported";
+const TASKS_TO_COME: [&str; 1] = ["function"];
+const TASKS: &str = "a problem has one task: [task.path] or [task.motion]";
+/// The keys of `[task.motion]` that are known but not supported yet.
+const MOTION_TO_COME: [&str; 2] = ["timing", "exact"];
 
 /// A key, or an item of a list, with its places in the text.
 struct Place<'p> {
@@ -170,14 +172,21 @@ impl<'a> TomlText<'a> {
 
     fn unknown_key(&self, key: &str, allowed: &[&str], span: Option<&Range<usize>>) -> Diagnostic {
         if TASKS_TO_COME.contains(&key) && allowed.contains(&"path") {
-            let is_second =
-                self.place("task.path").is_some_and(|(key, _)| self.text.get(key) == Some("path"));
-            let message = if is_second {
-                format!("two tasks: [task.path] and [task.{key}], which is not supported yet")
+            let first = ["path", "motion"].into_iter().find(|first| {
+                let place = self.place(&format!("task.{first}"));
+                place.is_some_and(|(key, _)| self.text.get(key) == Some(first))
+            });
+            let message = if let Some(first) = first {
+                format!("two tasks: [task.{first}] and [task.{key}], which is not supported yet")
             } else {
                 format!("[task.{key}] is not supported yet")
             };
-            return self.about_file(message).with_help(ONLY_PATH);
+            return self.about_file(message).with_help(TASKS);
+        }
+        if MOTION_TO_COME.contains(&key) && allowed.contains(&"poses") {
+            return self
+                .about_file(format!("{key} is not supported yet in [task.motion]"))
+                .with_help("remove it: poses are approached at whatever crank angles suit them, all alike");
         }
         if key == "task" && allowed.contains(&"vector_loop") {
             return self.about_file("this is a problem file, not a linkage file").with_help(

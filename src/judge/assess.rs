@@ -8,7 +8,9 @@ use crate::judge::loosen::design_limits;
 use crate::judge::referee::judge;
 use crate::judge::requirement::{Judged, at_least, at_most};
 use crate::mechanism::{AssemblyMode, Complex, FourBar, point};
-use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord};
+use crate::record::{
+    AngleErrorRecord, Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord,
+};
 use crate::task::Problem;
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::{Limits, Objective, TransmissionOver};
@@ -18,7 +20,7 @@ pub use crate::record::MET_TOLERANCE;
 /// Judges a linkage at crank angles given in degrees, one per target point (as in the record).
 ///
 /// `None` if the loop is open at a point or the pivots coincide: then there is no error to report. The rank is left at
-/// 0.
+/// 0. The body of a motion lies on the coupler where its errors are least.
 ///
 /// # Panics
 /// If there are fewer angles or assemblies than points.
@@ -28,30 +30,37 @@ pub fn assess(
     crank_deg: &[f64],
     assemblies: &[AssemblyMode],
 ) -> Option<Candidate> {
-    assess_on_curve(problem, linkage, crank_deg, assemblies, None)
+    assess_on_curve(problem, linkage, (crank_deg, assemblies), None, None)
+}
+
+/// Judges a candidate anew, by this problem; the body of a motion keeps its place on the coupler.
+pub fn assess_again(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
+    let Candidate { linkage, crank_deg, t1_at, frame_deg, .. } = candidate;
+    assess_on_curve(problem, linkage, (crank_deg, t1_at), *frame_deg, None)
 }
 
 /// Computes the distances of a candidate to its whole curve anew. Those of the candidates that a search does not list are
 /// carried over from the frame in which it searched, and differ in the last digits.
 pub fn measure_curve(problem: &Problem, candidate: &mut Candidate) {
-    let anew = assess(problem, &candidate.linkage, &candidate.crank_deg, &candidate.t1_at);
-    if let Some(anew) = anew {
+    if let Some(anew) = assess_again(problem, candidate) {
         candidate.error.to_curve = anew.error.to_curve;
     }
 }
 
-/// As [`assess`], for a linkage whose distances to its whole curve are known: a cognate has those of the linkage that
-/// it is a cognate of. They are most of the cost.
+/// As [`assess`] at the positions `at`, for a body of a motion at `frame_deg` from the direction C -> D (without it: where
+/// its errors are least) and for a linkage whose distances to its whole curve may be known: a cognate has those of the
+/// linkage that it is a cognate of. They are most of the cost.
 ///
 /// # Panics
 /// If there are fewer angles or assemblies than points.
 pub fn assess_on_curve(
     problem: &Problem,
     linkage: &FourBar,
-    crank_deg: &[f64],
-    assemblies: &[AssemblyMode],
+    at: (&[f64], &[AssemblyMode]),
+    frame_deg: Option<f64>,
     to_curve: Option<CurveErrorRecord>,
 ) -> Option<Candidate> {
+    let (crank_deg, assemblies) = at;
     let task = problem.task();
     let crank_angles: Vec<f64> = crank_deg.iter().map(|d| d.to_radians()).collect();
     let linkage_type = linkage.linkage_type()?;
@@ -59,7 +68,7 @@ pub fn assess_on_curve(
     if !linkage.link_ratio().is_finite() {
         return None;
     }
-    let error = task.errors(linkage, &crank_angles, assemblies)?;
+    let error = task.errors(linkage, &crank_angles, assemblies, frame_deg.map(f64::to_radians))?;
     let to_curve = match to_curve {
         Some(known) => known,
         None => distances_to_curve(task.points(), linkage, crank_angles[0], assemblies[0])?,
@@ -80,10 +89,11 @@ pub fn assess_on_curve(
         linkage: *linkage,
         crank_deg: crank_deg.to_vec(),
         t1_at: assemblies.to_vec(),
+        frame_deg: error.angle.as_ref().map(|angle| frame_deg.unwrap_or(angle.frame.to_degrees())),
         error: ErrorRecord {
             objective: match problem.spec().solve.objective {
                 Objective::SumOfSquares => error.objective,
-                Objective::MaxDeviation => error.deviation(task.tolerances()),
+                Objective::MaxDeviation => error.deviation(task),
             },
             sum_sq: error.sum_sq,
             rms,
@@ -91,6 +101,11 @@ pub fn assess_on_curve(
             max_at: error.max_at,
             rms_over_size: rms / task.size(),
             to_curve,
+            angle: error.angle.as_ref().map(|angle| AngleErrorRecord {
+                rms_deg: angle.rms.to_degrees(),
+                max_deg: angle.max.to_degrees(),
+                max_at: angle.max_at,
+            }),
             to_raw: None,
         },
         linkage_type,
@@ -111,7 +126,7 @@ pub fn assess_on_curve(
         defects: verdict.defects.clone(),
         costs: Vec::new(),
     };
-    let judged = Judged { problem, candidate: &candidate, verdict: &verdict, structural: &error.structural };
+    let judged = Judged { problem, candidate: &candidate, verdict: &verdict, error: &error };
     candidate.requirements = requirements(&judged);
     candidate.accepted = candidate.requirements.iter().all(|r| r.met)
         && !candidate.defects.iter().any(|d| problem.spec().require.forbids(d));
@@ -121,7 +136,7 @@ pub fn assess_on_curve(
 /// Returns the distances from the points as they were given, before smoothing and resampling, to the coupler curve of a
 /// candidate; `None` if the target is those points themselves.
 pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorRecord> {
-    let raw = &problem.spec().task.path.raw.as_ref()?.points;
+    let raw = &problem.spec().task.raw.as_ref()?.points;
     let points: Vec<Complex> = raw.iter().copied().map(point).collect();
     let (first, assembly) = (candidate.crank_deg.first()?, candidate.t1_at.first()?);
     distances_to_curve(&points, &candidate.linkage, first.to_radians(), *assembly)
@@ -130,10 +145,10 @@ pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorReco
 /// Returns the rows of the requirements and of the design's bounds, in the order of a record.
 fn requirements(judged: &Judged<'_>) -> Vec<Requirement> {
     let of = |kind: &RequirementKind| judged.row(*kind);
-    let before = |kind: &&RequirementKind| **kind != RequirementKind::Tolerance;
+    let before = |kind: &&RequirementKind| !kind.is_tolerance();
     let mut rows: Vec<Requirement> = RequirementKind::all().iter().filter(before).filter_map(of).collect();
     rows.extend(design_rows(judged.problem, &judged.candidate.linkage));
-    rows.extend(of(&RequirementKind::Tolerance));
+    rows.extend(RequirementKind::TOLERANCES.iter().filter_map(of));
     rows
 }
 

@@ -120,8 +120,12 @@ pub fn not_met(candidate: &Candidate) -> Vec<String> {
 }
 
 /// Returns the cognates of a candidate that meet the points as it does, [at A, at B], each judged under the problem;
-/// they share the distances to the whole curve, since the curve is the same.
+/// they share the distances to the whole curve, since the curve is the same. A motion has none: the couplers of cognates
+/// turn differently.
 pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
+    if problem.task().body().is_some() {
+        return Vec::new();
+    }
     let Some((angle, t1)) = candidate.crank_deg.first().zip(candidate.t1_at.first()) else {
         return Vec::new();
     };
@@ -136,7 +140,7 @@ pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
             }
         };
         let to_curve = Some(candidate.error.to_curve);
-        assess_on_curve(problem, &linkage, &crank_deg, &t1_at, to_curve)
+        assess_on_curve(problem, &linkage, (&crank_deg, &t1_at), None, to_curve)
             .filter(|form| has_error_of(problem, candidate, (&form.linkage, form.error.sum_sq), 1.0))
     };
     found.into_iter().flatten().filter_map(judged).collect()
@@ -158,7 +162,7 @@ fn in_step(
     if cognate.crank.with != OriginalLink::Crank {
         return None;
     }
-    let written = &problem.spec().task.path.timing.as_ref()?.crank_deg;
+    let written = &problem.spec().task.timing.as_ref()?.crank_deg;
     let direction = direction(written, &candidate.crank_deg);
     let base = match offset {
         AngleOffset::Fixed if cognate.crank.phase.abs() > NO_PHASE => return None,

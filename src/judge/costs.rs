@@ -23,7 +23,7 @@ use crate::task::forms::design_space::{DESIGN, Derived, Design, DesignSpace, Sha
 use crate::task::forms::rows::{Motion, RowKind, Side};
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedFit;
-use crate::task::forms::torus::TorusFit;
+use crate::task::forms::torus::{MotionFit, PathFit};
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::Objective;
 
@@ -84,8 +84,12 @@ pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
         let Some(fit) = TimedFit::new(problem, start.setting) else { return Vec::new() };
         at.costs(&fit, &start.positions, &fit.motion(&start.design, &shape))
     } else {
-        let fit = TorusFit::new(problem, start.setting);
-        at.costs(&fit, &start.positions, &fit.motion(&shape, &start.positions))
+        let (setting, positions) = (start.setting, &start.positions);
+        let motion = PathFit::new(problem, setting).motion(&shape, positions);
+        match problem.task().body() {
+            None => at.costs(&PathFit::new(problem, setting), positions, &motion),
+            Some(_) => at.costs(&MotionFit::new(problem, setting), positions, &motion),
+        }
     }
 }
 
@@ -99,7 +103,7 @@ struct At<'a> {
 }
 
 impl At<'_> {
-    fn costs<F: BlockLeastSquares<DESIGN>>(
+    fn costs<const R: usize, F: BlockLeastSquares<DESIGN, R>>(
         &self,
         fit: &F,
         state: &F::State,
@@ -134,9 +138,10 @@ impl At<'_> {
         }
         let mut gradient = [0.0; DESIGN];
         let complete = fit.linearise(design, state, &mut |block| {
-            let (t, r) = (block.tangent, block.residual);
-            let t_sq = t[0] * t[0] + t[1] * t[1];
-            let along = if t_sq > 0.0 { (t[0] * r[0] + t[1] * r[1]) / t_sq } else { 0.0 };
+            let (t, r) = (&block.tangent, &block.residual);
+            let t_sq: f64 = t.iter().map(|t| t * t).sum();
+            let along = t.iter().zip(r).map(|(t, r)| t * r).sum::<f64>();
+            let along = if t_sq > 0.0 { along / t_sq } else { 0.0 };
             for (axis, j) in block.jacobian.iter().enumerate() {
                 let normal = r[axis] - along * t[axis];
                 for (sum, by) in gradient.iter_mut().zip(j) {

@@ -1,18 +1,20 @@
-//! Structural errors: at the positions of the points, and to the whole coupler curve.
+//! Structural errors: of the places and the angles at the positions of the targets, and to the whole coupler curve.
 
 use crate::mechanism::effort::{POINTS_AT_ONCE, computed};
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
+use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar};
-use crate::record::CurveErrorRecord;
-use crate::task::PathTask;
+use crate::record::{Candidate, CurveErrorRecord};
+use crate::task::{Body, Problem, Task};
 use rayon::prelude::*;
 
-/// The errors T_j - P_j at the positions of the points.
+/// The errors at the positions of the targets: T_j - P_j of the place, and of the angle in a motion.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PathError {
-    /// The error vectors, desired minus generated, one per point.
+pub struct StructuralError {
+    /// The error vectors of the place, desired minus generated, one per target.
     pub structural: Vec<Complex>,
-    /// The weighted sum of squares, sum_j w_j |T_j - P_j|^2.
+    /// The weighted sum of squares, sum_j w_j (|T_j - P_j|^2 + (W dtheta_j)^2) with the angle's weight W, a length; in a
+    /// path the first term alone.
     pub objective: f64,
     /// The sum of squares, sum_j |T_j - P_j|^2.
     pub sum_sq: f64,
@@ -20,6 +22,59 @@ pub struct PathError {
     pub max: f64,
     /// The index of the first point with the largest error.
     pub max_at: usize,
+    /// The errors of the body's angle, in a motion.
+    pub angle: Option<AngleError>,
+}
+
+/// The errors of a body's angle at the targets of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AngleError {
+    /// The angle from the direction C -> D to the body's x axis, in radians, within half a turn.
+    pub frame: f64,
+    /// The errors, desired minus generated, in radians within half a turn; `None` where only the place counts.
+    pub structural: Vec<Option<f64>>,
+    /// The root of the mean square, over the targets that have an angle.
+    pub rms: f64,
+    /// The largest error.
+    pub max: f64,
+    /// The index of the first target that has it.
+    pub max_at: usize,
+}
+
+impl AngleError {
+    /// Returns the errors of a body that lies at `frame` from the couplers' directions (radians), one a target; without a
+    /// frame, of one that lies so that the weighted sum of squares is least.
+    fn of(body: &Body, weights: &[f64], couplers: &[f64], frame: Option<f64>) -> AngleError {
+        let apart: Vec<Option<f64>> = body
+            .angles
+            .iter()
+            .zip(couplers)
+            .map(|(angle, coupler)| angle.map(|angle| angle - coupler))
+            .collect();
+        let frame = frame.unwrap_or_else(|| best_frame(&apart, weights));
+        let structural: Vec<Option<f64>> =
+            apart.iter().map(|apart| apart.map(|a| wrapped(a - frame))).collect();
+        let (mut sum_sq, mut count, mut max, mut max_at) = (0.0, 0_usize, 0.0_f64, None);
+        for (j, error) in structural.iter().enumerate() {
+            let Some(error) = error else { continue };
+            sum_sq += error * error;
+            count += 1;
+            if max_at.is_none() || error.abs() > max {
+                (max, max_at) = (error.abs(), Some(j));
+            }
+        }
+        AngleError { frame, structural, rms: rms(sum_sq, count.max(1)), max, max_at: max_at.unwrap_or(0) }
+    }
+}
+
+/// Returns the frame for which the weighted sum of squared angle errors is least: the mean of the angles `apart`, each on
+/// the turn that is nearest to their mean direction.
+fn best_frame(apart: &[Option<f64>], weights: &[f64]) -> f64 {
+    let given = || apart.iter().zip(weights).filter_map(|(apart, weight)| Some(((*apart)?, *weight)));
+    let middle = given().map(|(apart, weight)| Complex::from_polar(weight, apart)).sum::<Complex>().arg();
+    let total: f64 = given().map(|(_, weight)| weight).sum();
+    let off: f64 = given().map(|(apart, weight)| weight * wrapped(apart - middle)).sum();
+    wrapped(middle + off / total)
 }
 
 /// Returns sqrt(sum_sq / n), the root of the mean square.
@@ -27,19 +82,39 @@ pub fn rms(sum_sq: f64, n: usize) -> f64 {
     (sum_sq / n as f64).sqrt()
 }
 
-impl PathError {
+impl StructuralError {
     /// Returns max_j |T_j - P_j| / tol_j, without a unit: 1 if the tolerances are just met; without tolerances the
-    /// largest error, a length.
-    pub fn deviation(&self, tolerances: Option<&[f64]>) -> f64 {
-        let Some(tolerances) = tolerances else { return self.max };
-        let parts = self.structural.iter().zip(tolerances).map(|(error, tolerance)| error.norm() / tolerance);
-        parts.fold(0.0, f64::max)
+    /// largest error, a length. In a motion the parts |dtheta_j| / tolerance_deg_j count too; without any tolerance,
+    /// the lengths W |dtheta_j|.
+    pub fn deviation(&self, task: &Task) -> f64 {
+        let of_angles = |part: &dyn Fn(usize, f64) -> f64| {
+            let angles = self.angle.iter().flat_map(|angle| angle.structural.iter().enumerate());
+            angles.filter_map(|(j, error)| Some(part(j, (*error)?.abs()))).fold(0.0, f64::max)
+        };
+        let angle_tolerances = task.body().and_then(|body| body.tolerances.as_deref());
+        let places = match task.tolerances() {
+            Some(tolerances) => {
+                let parts =
+                    self.structural.iter().zip(tolerances).map(|(error, tolerance)| error.norm() / tolerance);
+                parts.fold(0.0, f64::max)
+            }
+            None if angle_tolerances.is_some() => 0.0,
+            None => self.max,
+        };
+        match angle_tolerances {
+            Some(tolerances) => places.max(of_angles(&|j, error| error / tolerances[j])),
+            None if task.tolerances().is_some() => places,
+            None => {
+                places.max(of_angles(&|_, error| task.body().map_or(0.0, |body| body.angle_weight) * error))
+            }
+        }
     }
 }
 
-impl PathTask {
-    /// Returns the errors of a linkage at the given crank angles (radians) and assemblies, one per point; `None` if the
-    /// loop is open at a point.
+impl Task {
+    /// Returns the errors of a linkage at the given crank angles (radians) and assemblies, one per target; `None` if the
+    /// loop is open at a target. The body of a motion lies at `frame` from C -> D (radians); without a frame it lies where
+    /// the errors are least.
     ///
     /// # Panics
     /// If there are fewer angles or assemblies than points.
@@ -48,13 +123,24 @@ impl PathTask {
         linkage: &FourBar,
         crank_angles: &[f64],
         assemblies: &[AssemblyMode],
-    ) -> Option<PathError> {
+        frame: Option<f64>,
+    ) -> Option<StructuralError> {
         computed(self.len());
-        let mut error =
-            PathError { structural: Vec::new(), objective: 0.0, sum_sq: 0.0, max: 0.0, max_at: 0 };
+        let mut error = StructuralError {
+            structural: Vec::new(),
+            objective: 0.0,
+            sum_sq: 0.0,
+            max: 0.0,
+            max_at: 0,
+            angle: None,
+        };
+        let mut couplers = Vec::new();
         for (j, &target) in self.points().iter().enumerate() {
-            let generated = linkage.position_with(crank_angles[j], assemblies[j]).joints()?.coupler_point;
-            let difference = target - generated;
+            let joints = linkage.position_with(crank_angles[j], assemblies[j]).joints()?;
+            if self.body().is_some() {
+                couplers.push((joints.follower_pin - joints.crank_pin).arg());
+            }
+            let difference = target - joints.coupler_point;
             let sq = difference.norm_sqr();
             error.structural.push(difference);
             error.objective += self.weights()[j] * sq;
@@ -64,8 +150,23 @@ impl PathTask {
                 error.max_at = j;
             }
         }
+        if let Some(body) = self.body() {
+            let angle = AngleError::of(body, self.weights(), &couplers, frame);
+            for (error_of_angle, weight) in angle.structural.iter().zip(self.weights()) {
+                let length = body.angle_weight * error_of_angle.unwrap_or(0.0);
+                error.objective += weight * length * length;
+            }
+            error.angle = Some(angle);
+        }
         Some(error)
     }
+}
+
+/// Returns the errors of a candidate at its own positions and in its own frame; `None` if the loop is open at a target.
+pub fn structural_error(problem: &Problem, candidate: &Candidate) -> Option<StructuralError> {
+    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let frame = candidate.frame_deg.map(f64::to_radians);
+    problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at, frame)
 }
 
 /// The cost of finding the nearest point of a curve, in positions: 720 samples are compared, and one or two minima

@@ -66,7 +66,7 @@ pub fn class(problem: &Problem, target: &Target, solution: &Solution, depth: Dep
         if depth == Depth::Glance {
             to_curve = at_points(problem, &mechanism.linkage, &crank_deg, &t1_at);
         }
-        let judged = assess_on_curve(problem, &mechanism.linkage, &crank_deg, &t1_at, to_curve);
+        let judged = assess_on_curve(problem, &mechanism.linkage, (&crank_deg, &t1_at), None, to_curve);
         if let Some(form) = judged {
             to_curve.get_or_insert(form.error.to_curve);
             forms.push(form);
@@ -98,7 +98,7 @@ fn at_points(
     t1_at: &[AssemblyMode],
 ) -> Option<CurveErrorRecord> {
     let angles: Vec<f64> = crank_deg.iter().map(|deg| deg.to_radians()).collect();
-    let error = problem.task().errors(linkage, &angles, t1_at)?;
+    let error = problem.task().errors(linkage, &angles, t1_at, None)?;
     Some(CurveErrorRecord {
         sum_sq: error.sum_sq,
         rms: rms(error.sum_sq, problem.task().len()),

@@ -14,7 +14,7 @@ use crate::record::{Candidate, Family};
 use crate::task::Problem;
 use crate::task::forms::design_space::{DESIGN, Derived, DesignSpace, SHAPE, Shape, unit};
 use crate::task::forms::timed::TimedFit;
-use crate::task::forms::torus::TorusFit;
+use crate::task::forms::torus::{MotionFit, PathFit};
 use nalgebra::{DMatrix, SMatrix};
 
 /// The part of the largest singular value below which a singular value counts as zero: an exact answer is known to
@@ -39,7 +39,11 @@ pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     if start.positions.is_empty() {
         linearised(&TimedFit::new(problem, start.setting)?, &start.design, &start.positions, &mut rows)?;
     } else {
-        linearised(&TorusFit::new(problem, start.setting), &start.design, &start.positions, &mut rows)?;
+        let (design, positions) = (&start.design, &start.positions);
+        match problem.task().body() {
+            None => linearised(&PathFit::new(problem, start.setting), design, positions, &mut rows)?,
+            Some(_) => linearised(&MotionFit::new(problem, start.setting), design, positions, &mut rows)?,
+        }
     }
     let space = problem.space(start.setting.side);
     let shape = space.shape(&start.design)?;
@@ -51,20 +55,25 @@ pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
 }
 
 /// Adds the rows of all points' derivatives, normal to their own tangents; `None` if one does not exist.
-fn linearised<P: BlockLeastSquares<DESIGN>>(
+fn linearised<const R: usize, P: BlockLeastSquares<DESIGN, R>>(
     fit: &P,
     x: &[f64; DESIGN],
     state: &P::State,
     rows: &mut Vec<[f64; DESIGN]>,
 ) -> Option<()> {
-    let exists = fit.linearise(x, state, &mut |block: &PointBlock<DESIGN>| {
-        let [t_x, t_y] = block.tangent;
-        let length = t_x.hypot(t_y);
-        let [by_x, by_y] = block.jacobian;
+    let exists = fit.linearise(x, state, &mut |block: &PointBlock<DESIGN, R>| {
+        let (t, j) = (&block.tangent, &block.jacobian);
+        let length = t.iter().map(|t| t * t).sum::<f64>().sqrt();
         if length == 0.0 {
-            rows.extend([by_x, by_y]);
+            rows.extend(j);
+        } else if R == 2 {
+            rows.push(std::array::from_fn(|i| (t[0] * j[1][i] - t[1] * j[0][i]) / length));
         } else {
-            rows.push(std::array::from_fn(|i| (t_x * by_y[i] - t_y * by_x[i]) / length));
+            // All rows less their part along the tangent: one more than independent ones.
+            let along: [f64; DESIGN] = std::array::from_fn(|i| {
+                t.iter().zip(j).map(|(t, row)| t * row[i]).sum::<f64>() / (length * length)
+            });
+            rows.extend(t.iter().zip(j).map(|(t, row)| std::array::from_fn(|i| row[i] - t * along[i])));
         }
     });
     exists.then_some(())

@@ -1,6 +1,6 @@
 //! Relaxation of a problem: each requirement as limits with an outward side.
 
-use crate::judge::assess::assess;
+use crate::judge::assess::assess_again;
 use crate::record::{Candidate, Change, TypedValue};
 use crate::task::Problem;
 use crate::task::requirement::{Choice, Limit, RequirementKind};
@@ -373,7 +373,7 @@ pub fn rounded_outward(value: f64, from: f64, outward: f64) -> f64 {
 
 /// Returns the candidate judged under a problem that is stricter than the one that it was found for.
 pub fn judged_under(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
-    assess(problem, &candidate.linkage, &candidate.crank_deg, &candidate.t1_at)
+    assess_again(problem, candidate)
 }
 
 #[cfg(test)]

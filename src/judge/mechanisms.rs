@@ -13,7 +13,7 @@
 use crate::judge::referee::judge;
 use crate::mechanism::{AssemblyMode, Complex, FourBar, cross};
 use crate::numbers::nine_point::target::{STEPS, Solution, Target};
-use crate::task::{Defect, PathTask};
+use crate::task::{Defect, Task};
 
 /// The number of points.
 pub const POINTS: usize = STEPS + 1;
@@ -89,7 +89,7 @@ impl Real {
 
     /// Builds the mechanism whose crank is the `driven` one of the two links on the ground, with its positions; `None`
     /// if its lengths make no linkage.
-    fn mechanism(&self, task: &PathTask, target: &Target, driven: usize) -> Option<Mechanism> {
+    fn mechanism(&self, task: &Task, target: &Target, driven: usize) -> Option<Mechanism> {
         let (x, y) = (self.pins[driven], self.pins[1 - driven]);
         let (a, b) = (self.grounds[driven], self.grounds[1 - driven]);
         let scale = target.scale;
@@ -144,7 +144,7 @@ impl Real {
 
 /// Returns the six mechanisms of a real solution, cognate by cognate, the first link driven before the second; fewer
 /// if one has a link of no length. `task` is the path of the nine points of `target`.
-pub fn mechanisms(task: &PathTask, target: &Target, solution: &Solution) -> Vec<Mechanism> {
+pub fn mechanisms(task: &Task, target: &Target, solution: &Solution) -> Vec<Mechanism> {
     let mut form = *solution;
     let mut list = Vec::with_capacity(6);
     for _ in 0..3 {

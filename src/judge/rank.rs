@@ -19,7 +19,8 @@
 use super::look::Look;
 pub use super::look::NEAR;
 use super::symmetry::Symmetries;
-use crate::record::{Candidate, Figure};
+use crate::judge::error::structural_error;
+use crate::record::{Candidate, Figure, Requirement};
 use crate::task::Defect;
 use crate::task::Problem;
 use crate::task::requirement::RequirementKind;
@@ -73,8 +74,7 @@ pub fn searched(problem: &Problem, candidate: &Candidate) -> f64 {
     if problem.spec().solve.objective == Objective::SumOfSquares {
         return candidate.error.objective;
     }
-    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-    let error = problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at);
+    let error = structural_error(problem, candidate);
     error.map_or(f64::INFINITY, |error| error.objective)
 }
 
@@ -127,14 +127,16 @@ pub(super) fn severity(candidate: &Candidate) -> usize {
 
 /// Returns the key by which, of candidates that meet all other requirements, the nearest to the tolerances comes first.
 fn missed(candidate: &Candidate) -> (bool, f64) {
-    let tolerance = RequirementKind::Tolerance.name();
-    let row = candidate.requirements.iter().find(|r| r.name == tolerance);
-    let Some(row) = row.filter(|_| !candidate.accepted) else { return (false, 0.0) };
-    let others = candidate.requirements.iter().any(|r| !r.met && r.name != tolerance);
-    match (&row.value, &row.limit) {
-        (Figure::Number(value), Figure::Number(limit)) if !row.met => (others, value / limit),
-        _ => (others, 0.0),
+    let is_tolerance = |row: &&Requirement| RequirementKind::names_tolerance(&row.name);
+    if candidate.accepted || !candidate.requirements.iter().any(|row| is_tolerance(&row)) {
+        return (false, 0.0);
     }
+    let others = candidate.requirements.iter().any(|row| !row.met && !is_tolerance(&row));
+    let part = |row: &Requirement| match (&row.value, &row.limit) {
+        (Figure::Number(value), Figure::Number(limit)) if !row.met => value / limit,
+        _ => 0.0,
+    };
+    (others, candidate.requirements.iter().filter(is_tolerance).map(part).fold(0.0, f64::max))
 }
 
 /// Returns the longest of the links and the coupler's side.

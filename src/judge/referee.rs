@@ -8,7 +8,7 @@
 //! *Order* is judged if the timing is free (prescribed angles are an order by themselves, but for a closed target): the parameter of the circuit
 //! (the crank angle, or psi if the input rocks) must run one way through the points and less than once around.
 //!
-//! A target that ends where it begins ([`PathTask::returns`]) has one step more, from its last point back to its first,
+//! A target that ends where it begins ([`Task::returns`]) has one step more, from its last point back to its first,
 //! and that has to be taken without reversing: a crank that turns fully turns on; one that rocks comes back only by way
 //! of both toggles, around the whole circuit, if the task allows that ([`Return`]). A motion that returns through all
 //! of its points in reverse is out of order at point 0, unless the task allows that too. Prescribed angles of a closed
@@ -22,7 +22,7 @@ use crate::mechanism::{
 };
 use crate::task::Defect;
 use crate::task::defect::ORDER_TOLERANCE;
-use crate::task::{PathTask, Return, Timing};
+use crate::task::{Return, Task, Timing};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Number of samples of the motion between two neighbouring points on which closure is checked.
@@ -58,12 +58,7 @@ pub struct Verdict {
 ///
 /// # Panics
 /// If there are fewer angles or assemblies than points.
-pub fn judge(
-    task: &PathTask,
-    linkage: &FourBar,
-    crank_angles: &[f64],
-    assemblies: &[AssemblyMode],
-) -> Verdict {
+pub fn judge(task: &Task, linkage: &FourBar, crank_angles: &[f64], assemblies: &[AssemblyMode]) -> Verdict {
     let n = task.len();
     let samples = (CLOSURE_SAMPLES * n).min(MOST_CLOSURE_SAMPLES);
     computed(n + samples);

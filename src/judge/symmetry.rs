@@ -13,7 +13,7 @@
 
 use super::look::{Look, NEAR};
 use super::unwrapped::unwrapped;
-use crate::judge::assess::assess;
+use crate::judge::assess::assess_again;
 use crate::mechanism::{AssemblyMode, Complex, FourBar, NaturalCoordinates};
 use crate::record::Candidate;
 use crate::task::Problem;
@@ -46,11 +46,11 @@ struct Symmetry {
 pub struct Symmetries(Vec<Symmetry>);
 
 impl Symmetries {
-    /// Finds the symmetries of a problem's target: of its points, weights and tolerances.
+    /// Finds the symmetries of a problem's target: of its points, weights and tolerances. None are looked for in a motion.
     pub fn of(problem: &Problem) -> Self {
         let task = problem.task();
         let all = task.points();
-        if all.len() > MOST_POINTS {
+        if all.len() > MOST_POINTS || task.body().is_some() {
             return Symmetries::default();
         }
         // The closing point is the first one again.
@@ -99,7 +99,7 @@ pub fn mirror_image_serves(problem: &Problem, candidate: &Candidate) -> bool {
         let another = own.difference(&Look::of(Cow::Borrowed(&image))) >= NEAR;
         let bar = candidate.error.rms * (1.0 + AS_GOOD) + TYPED * size;
         let serves = |c: Candidate| c.accepted && c.error.rms <= bar;
-        another && assess(problem, &image.linkage, &image.crank_deg, &image.t1_at).is_some_and(serves)
+        another && assess_again(problem, &image).is_some_and(serves)
     })
 }
 
@@ -163,7 +163,7 @@ impl Symmetry {
 
 /// Returns the prescribed angles of a linkage, if the angles that it has are equal to them up to whole turns.
 fn in_step(problem: &Problem, linkage: &FourBar, offset: AngleOffset, has: &[f64]) -> Option<Vec<f64>> {
-    let written = &problem.spec().task.path.timing.as_ref()?.crank_deg;
+    let written = &problem.spec().task.timing.as_ref()?.crank_deg;
     let (first, asked) = (*has.first()?, *written.first()?);
     problem.directions().iter().find_map(|direction| {
         let base = match offset {
@@ -220,7 +220,7 @@ mod tests {
         let all = Symmetries::of(&problem);
         assert_eq!(all.0.len(), 3);
         for image in all.images(&problem, &candidate) {
-            let judged = assess(&problem, &image.linkage, &image.crank_deg, &image.t1_at).expect("it closes");
+            let judged = assess_again(&problem, &image).expect("it closes");
             let (one, other) = (candidate.error.sum_sq, judged.error.sum_sq);
             assert!((one - other).abs() <= 1e-9 * one, "{one} {other}");
             assert_eq!(judged.defects, candidate.defects);

@@ -5,7 +5,7 @@ use crate::task::Timing;
 use crate::task::forms::design_space::Shape;
 use crate::task::forms::rows::nearest_type;
 use crate::task::forms::start::Start;
-use crate::task::forms::torus::{Positions, TorusFit};
+use crate::task::forms::torus::{PathFit, Positions};
 use crate::task::{Problem, Setting};
 
 /// Returns the start at a candidate; `None` if the loop is open at a point or there are fewer positions than points.
@@ -29,7 +29,10 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
     }
     let types = problem.types();
     let aim = if types.is_empty() { None } else { nearest_type(shape.links(), types) };
-    let (direction, offset) = direction_and_offset(problem, &candidate.crank_deg);
+    let (direction, mut offset) = direction_and_offset(problem, &candidate.crank_deg);
+    if let Some(frame) = candidate.frame_deg.filter(|_| problem.frame_is_free()) {
+        offset = frame.to_radians();
+    }
     let side = candidate.linkage.side();
     let setting = Setting { aim, assembly: candidate.t1_at[0], direction, side };
     let design = problem.space(side).design(&shape, offset);
@@ -38,7 +41,7 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
         Timing::Free => {
             // A design that was shortened or clamped to its bounds has other curves.
             let mut positions = positions(candidate, &as_it_is)?;
-            TorusFit::new(problem, setting).settle(&design, &mut positions).then_some(positions)?
+            PathFit::new(problem, setting).settle(&design, &mut positions).then_some(positions)?
         }
     };
     Some(Start { design, setting, positions })
@@ -46,7 +49,7 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
 
 /// Returns the direction of the prescribed increments and the angle that is added to them, in radians.
 fn direction_and_offset(problem: &Problem, crank_deg: &[f64]) -> (f64, f64) {
-    let Some(timing) = &problem.spec().task.path.timing else { return (problem.directions()[0], 0.0) };
+    let Some(timing) = &problem.spec().task.timing else { return (problem.directions()[0], 0.0) };
     let written = &timing.crank_deg;
     let off = |direction: f64| {
         let steps = crank_deg.iter().zip(written);

@@ -1,10 +1,11 @@
-//! Mechanisms: the four-bar and the chain, their motion, their links as plates, the units of their lengths.
+//! Mechanisms: the four-bar and the chain, their motion, the dyads that guide a body, their links as plates, the units of their lengths.
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`analysis`] | analysis of a given linkage: positions, velocities and accelerations at crank angles, by one method or by several side by side, in one configuration or in all four |
 //! | [`any`] | a linkage of any kind |
 //! | [`chain`] | chains: compound mechanisms of a driven crank and stages, each attached to points that are already known, with the position in closed form |
+//! | [`dyad`] | poses of a body, and the dyads that guide it |
 //! | [`effort`] | counter of linkage positions computed between two checks for a stop, in this crate's own tests; elsewhere it does nothing |
 //! | [`four_bar`] | planar four-bar linkages: parameters, position, motion, mobility, coupler curve and cognates |
 //! | [`plates`] | the links as flat plates with holes at the joints, which can be cut out |
@@ -13,6 +14,7 @@
 pub mod analysis;
 mod any;
 pub mod chain;
+pub mod dyad;
 pub(crate) mod effort;
 pub mod four_bar;
 pub mod plates;
@@ -23,6 +25,7 @@ pub use crate::numbers::arithmetic::{
 };
 pub use any::Linkage;
 pub use chain::{Chain, ChainBuilder};
+pub use dyad::{Dyad, Pose};
 pub use four_bar::{
     AssemblyMode, Branch, Circuit, CouplerCurve, CouplerSide, FLAT_TOLERANCE, FourBar, InputArc, InputRange,
     Joints, LinkageError, LinkageType, MAX_MAGNITUDE, Mobility, NaturalCoordinates, OnCircuit, Position,

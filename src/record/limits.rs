@@ -24,7 +24,7 @@ pub struct BeyondLimits {
 impl Record {
     /// The first key that is beyond its limit: a list that is too long, points that no problem has.
     pub fn beyond_limits(&self) -> Option<BeyondLimits> {
-        let path = &self.problem.resolved.task.path;
+        let path = &self.problem.resolved.task;
         let raw = path.raw.as_ref();
         let smoothed = raw.is_some_and(|raw| raw.smooth.is_some());
         let exact = self.exact.as_ref();

@@ -262,6 +262,9 @@ pub struct Candidate {
     pub crank_deg: Vec<f64>,
     /// The assembly at each target point.
     pub t1_at: Vec<AssemblyMode>,
+    /// In a motion: the angle from the direction C -> D to the body's x axis, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame_deg: Option<f64>,
     /// How far the coupler point is from the target.
     pub error: ErrorRecord,
     /// The type.
@@ -326,9 +329,23 @@ pub struct ErrorRecord {
     pub rms_over_size: f64,
     /// Distances to the whole coupler curve of the circuit, whatever the timing.
     pub to_curve: CurveErrorRecord,
+    /// In a motion: the errors of the body's angle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle: Option<AngleErrorRecord>,
     /// Where the target was smoothed or resampled: distances of the points as they were given to that same curve.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to_raw: Option<CurveErrorRecord>,
+}
+
+/// The errors of a body's angle over the poses that give one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct AngleErrorRecord {
+    /// The root of the mean square, degrees.
+    pub rms_deg: f64,
+    /// The largest, degrees.
+    pub max_deg: f64,
+    /// Where it is, counted from 0.
+    pub max_at: usize,
 }
 
 /// Distances to the whole coupler curve.

@@ -57,7 +57,7 @@ pub fn none_through(record: &Record) -> Option<String> {
     } else {
         "the candidates come near"
     };
-    Some(if on_one_line(&record.problem.resolved.task.path.points) {
+    Some(if on_one_line(&record.problem.resolved.task.points) {
         format!(
             "The nine points lie on one line, and a coupler curve meets a line in at most six points: no linkage passes \
              through all nine; {nearest}."

@@ -26,7 +26,7 @@ pub(super) fn costs(record: &Record) -> String {
 
 /// Returns the error in which costs are stated: rms, weighted if the points are.
 fn rms(record: &Record, candidate: &Candidate) -> f64 {
-    let weights = record.problem.resolved.task.path.weight.as_ref();
+    let weights = record.problem.resolved.task.weight.as_ref();
     weights.map_or(candidate.error.rms, |w| (candidate.error.objective / w.iter().sum::<f64>()).sqrt())
 }
 

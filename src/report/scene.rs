@@ -84,7 +84,7 @@ impl Scene {
 
 /// Returns the target points that can be drawn, each with the coupler point's place at it.
 fn targets(record: &Record, reached: &dyn Fn(usize) -> Option<Complex>) -> Vec<Target> {
-    let points = record.problem.resolved.task.path.points.iter().enumerate();
+    let points = record.problem.resolved.task.points.iter().enumerate();
     let usable = points.filter(|(_, p)| p.iter().all(|x| x.abs() <= MAX_MAGNITUDE));
     usable.map(|(index, p)| Target { index, at: point(*p), reached: reached(index) }).collect()
 }

@@ -52,7 +52,7 @@ pub(super) fn heading(record: &Record, colour: Colour) -> String {
 
 /// Returns a text such as `18 points, size 1.082 m, prescribed timing, offset free, closed`.
 pub(super) fn facts(record: &Record) -> String {
-    let path = &record.problem.resolved.task.path;
+    let path = &record.problem.resolved.task;
     let mut facts = vec![count(path.points.len(), "point")];
     if let Ok(task) = path.to_task() {
         facts.push(format!("size {}{}", brief(task.size(), 4), words::unit_suffix(record)));
@@ -163,7 +163,7 @@ fn notes(record: &Record) -> String {
 
 /// Returns the distances of the curves from the points as they were given, before smoothing and resampling.
 pub(super) fn against_raw(record: &Record) -> Option<String> {
-    let raw = record.problem.resolved.task.path.raw.as_ref()?;
+    let raw = record.problem.resolved.task.raw.as_ref()?;
     let unit = words::unit_suffix(record);
     let of = |c: &Candidate| {
         let error = c.error.to_raw?;
@@ -277,9 +277,7 @@ pub fn batch_summary(files: &[BatchRow<'_>], colour: Colour) -> String {
         files,
         &[
             (Left, "problem", &|file| plain(shortened(&clean(file.name), 30))),
-            (Right, "points", &|file| {
-                ran(file, &|r| grouped(r.problem.resolved.task.path.points.len() as u64))
-            }),
+            (Right, "points", &|file| ran(file, &|r| grouped(r.problem.resolved.task.points.len() as u64))),
             (Right, "best sum of sq", &|file| figure(file, |e| e.sum_sq, 6)),
             (Right, "rms", &|file| figure(file, |e| e.rms, 4)),
             (Right, "max", &|file| figure(file, |e| e.max, 4)),

@@ -129,7 +129,7 @@ impl Deviation {
     /// Returns the deviation of a candidate that is the largest part of its tolerance, of equal ones the first; `None` if
     /// no tolerances were asked for.
     fn worst(record: &Record, candidate: &Candidate) -> Option<Deviation> {
-        let path = &record.problem.resolved.task.path;
+        let path = &record.problem.resolved.task;
         let positions = candidate.crank_deg.iter().zip(&candidate.t1_at);
         let points = path.points.iter().zip(path.tolerance.as_ref()?).zip(positions).enumerate();
         let deviations = points.filter_map(|(point, ((target, tolerance), (angle, assembly)))| {
@@ -340,7 +340,7 @@ pub(super) fn without_advice(record: &Record) -> Option<&'static str> {
 
 /// Returns the timing of the target.
 pub(super) fn timing(record: &Record) -> &'static str {
-    match record.problem.resolved.task.path.timing.as_ref().map(|timing| timing.offset) {
+    match record.problem.resolved.task.timing.as_ref().map(|timing| timing.offset) {
         None => "free timing",
         Some(AngleOffset::Free) => "prescribed timing, offset free",
         Some(AngleOffset::Fixed) => "prescribed timing, from the x axis",

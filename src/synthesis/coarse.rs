@@ -7,7 +7,7 @@
 use super::constants::coarse::{CORNER, DENSE, GROUPS};
 use crate::mechanism::{Complex, cross};
 use crate::task::forms::start::Start;
-use crate::task::forms::torus::{Positions, TorusFit};
+use crate::task::forms::torus::{PathFit, Positions};
 use crate::task::{Problem, Timing};
 use std::ops::Range;
 
@@ -88,17 +88,17 @@ impl Coarse {
         let groups: Vec<Range<usize>> = (0..count).map(|k| k * n / count..(k + 1) * n / count).collect();
         let weight = |group: &Range<usize>| task.weights()[group.clone()].iter().sum::<f64>();
         let mut spec = problem.spec().clone();
-        spec.task.path.points = groups
+        spec.task.points = groups
             .iter()
             .map(|group| {
                 let point = point(problem, group.clone());
                 [point.re, point.im]
             })
             .collect();
-        spec.task.path.weight = Some(groups.iter().map(weight).collect());
-        spec.task.path.tolerance = None;
+        spec.task.weight = Some(groups.iter().map(weight).collect());
+        spec.task.tolerance = None;
         let cyclic = task.closed() || task.repeats_first();
-        spec.task.path.closed = cyclic;
+        spec.task.closed = cyclic;
         Some(Coarse { problem: problem.with(spec).ok()?, groups, cyclic })
     }
 
@@ -130,7 +130,7 @@ impl Coarse {
         if dense.task().repeats_first() {
             positions.push(positions[0]);
         }
-        let fit = TorusFit::new(dense, coarse.setting);
+        let fit = PathFit::new(dense, coarse.setting);
         fit.settle(&coarse.design, &mut positions).then_some(Start {
             design: coarse.design,
             setting: coarse.setting,

@@ -82,6 +82,31 @@ pub mod rounds {
     pub const KEPT: usize = 400;
 }
 
+/// Poses of a body with free timing: `benches/motion` chooses them.
+pub mod motion {
+    /// Rounds that run in parallel before any is read.
+    pub const BATCH: u64 = 2;
+    /// Places a side of the map of circle errors, and its reach in sizes of the target; the most minima taken.
+    pub const GRID: usize = 61;
+    pub const REACH: f64 = 2.5;
+    pub const MINIMA: usize = 6;
+    /// Sets of five poses in the first round and in a later one.
+    pub const SETS_FIRST: usize = 3;
+    pub const SETS_LATER: usize = 2;
+    /// Dyads of a round at least; what is missing is drawn.
+    pub const PINS: usize = 7;
+    /// Starts fitted for a few steps, and to convergence.
+    pub const SHORT: usize = 8;
+    pub const LONG: usize = 3;
+    /// Rounds that have to reach the best answer.
+    pub const HITS: usize = 3;
+    /// Least number of batches, and batches without a new answer that end a search for further distinct answers.
+    pub const LEAST_BATCHES: u64 = 2;
+    pub const QUIET_BATCHES: u64 = 8;
+    /// Number of candidates kept while searching.
+    pub const KEPT: usize = 200;
+}
+
 /// Prescribed timing by variable projection, in its reduced form; no benchmark chooses them.
 pub mod variable_projection {
     /// Draws in a batch.

@@ -42,8 +42,11 @@ pub(super) struct Frame {
     size: f64,
 }
 
-/// A point with its weight and its tolerance.
-type Item = [f64; 4];
+/// A target: the place with its weight and its tolerance, and the angle in degrees with its tolerance.
+type Item = [f64; 6];
+
+/// The angle of a target at which only the place counts: none that a body has.
+const NO_ANGLE: f64 = 1e3;
 
 /// An image of the target, and how it is made.
 struct Image {
@@ -59,8 +62,9 @@ impl Frame {
         let (centre, size) = (task.centre(), task.size());
         let upright = Similarity { from: [centre.re, centre.im], scale: 1.0 / size, ..Similarity::IDENTITY };
         let mut bare = spec.clone();
-        let path = &mut bare.task.path;
-        (path.points, path.weight, path.tolerance, path.raw) = (Vec::new(), None, None, None);
+        let path = &mut bare.task;
+        (path.points, path.weight, path.tolerance, path.raw, path.body) =
+            (Vec::new(), None, None, None, None);
         let items = items(&spec.placed(&upright).rounded(GRID));
         let mut least: Vec<Image> = Vec::new();
         for (mirrors, turns, reversed) in images() {
@@ -268,7 +272,8 @@ fn carried(
     let (crank_deg, t1_at) = unwrapped(problem, &linkage, angles, assemblies);
     let space = problem.space(linkage.side());
     let linkage = space.project_off_grid(&linkage, GRID, problem.task().size()).ok()?;
-    assess_on_curve(problem, &linkage, &crank_deg, &t1_at, to_curve)
+    let frame_deg = candidate.frame_deg.map(|frame| if by.mirrors { -frame } else { frame });
+    assess_on_curve(problem, &linkage, (&crank_deg, &t1_at), frame_deg, to_curve)
 }
 
 /// Returns whether it makes no difference at which of its points the path begins: it is closed, no point counts twice,
@@ -291,9 +296,14 @@ fn images() -> impl Iterator<Item = (bool, u8, bool)> {
 
 /// Returns the points of a problem with their weights and tolerances.
 fn items(spec: &ProblemSpec) -> Vec<Item> {
-    let path = &spec.task.path;
+    let path = &spec.task;
     let of = |list: &Option<Vec<f64>>, j: usize| list.as_ref().map_or(1.0, |list| list[j]);
-    let item = |(j, &[x, y]): (usize, &[f64; 2])| [x, y, of(&path.weight, j), of(&path.tolerance, j)];
+    let body = path.body.as_ref();
+    let angle = |j: usize| body.map_or(NO_ANGLE, |body| body.angle_deg[j].unwrap_or(NO_ANGLE));
+    let item = |(j, &[x, y]): (usize, &[f64; 2])| {
+        let tolerance_deg = body.map_or(1.0, |body| of(&body.tolerance_deg, j));
+        [x, y, of(&path.weight, j), of(&path.tolerance, j), angle(j), tolerance_deg]
+    };
     path.points.iter().enumerate().map(item).collect()
 }
 
@@ -304,10 +314,13 @@ impl Image {
         let n = items.len();
         let end = Numbering { first: if reversed { n - 1 } else { 0 }, reversed };
         let mut items = end.list(items);
-        for [x, y, ..] in &mut items {
+        for [x, y, _, _, angle, _] in &mut items {
             let turned = similarity.turned([*x, *y]);
             // Adding zero takes the sign off a zero.
             (*x, *y) = (turned[0] + 0.0, turned[1] + 0.0);
+            if *angle != NO_ANGLE {
+                *angle = similarity.direction(*angle) + 0.0;
+            }
         }
         let first = if rotates { least_rotation(&items) } else { 0 };
         items.rotate_left(first);
@@ -410,8 +423,8 @@ mod tests {
         assert!(!any_start("closing = \"any\"") && any_start("closing = \"any\"\norder = \"any\""));
         assert!(!any_start("type = [\"triple-rocker\"]"));
         let mut spec = problem(draws, 12, "").spec().clone();
-        let first = spec.task.path.points[0];
-        spec.task.path.points.push(first);
+        let first = spec.task.points[0];
+        spec.task.points.push(first);
         assert!(!rotates(&Problem::new(spec).expect("a path")));
     }
 

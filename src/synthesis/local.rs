@@ -1,8 +1,8 @@
-//! The local searches by least squares, chosen by the timing.
+//! The local searches by least squares, chosen by the task.
 
 use super::constants::plan::REDUCED_SHARE;
 use super::driver::{Allowance, Found};
-use super::{Context, free, rounds, variable_projection};
+use super::{Context, free, motion, rounds, variable_projection};
 use crate::record::Reason;
 use crate::task::Timing;
 
@@ -13,8 +13,10 @@ type Search = fn(Context<'_>, Allowance) -> Option<Found>;
 /// finds something acceptable.
 pub(super) fn search(context: Context<'_>, Allowance { limit, patience }: Allowance) -> Found {
     // Each with its part of the patience that is left.
-    let searches: &[(Search, f64)] = match context.problem.task().timing() {
+    let task = context.problem.task();
+    let searches: &[(Search, f64)] = match task.timing() {
         Timing::Prescribed { .. } => &[(variable_projection::search, REDUCED_SHARE), (rounds::search, 1.0)],
+        Timing::Free if task.body().is_some() => &[(motion::search, 1.0)],
         Timing::Free => &[(free::search, 1.0)],
     };
     let mut found = Found::nothing();

@@ -14,6 +14,7 @@
 //! | [`context`] | the inputs that every search is given, as one value |
 //! | [`continuation`] | the method `continuation`: all linkages through nine precision points, as candidates, alone or beside the approximate answers of `auto` |
 //! | [`driver`] | the loop of every search in batches: states saved, a batch run, progress reported, the stopping rule asked |
+//! | [`dyads`] | Burmester's problem: the dyads that guide a body through given poses, exactly or nearly, and the linkages of two of them |
 //! | [`errors_without`] | the error that is left without each requirement that is active at the best candidate |
 //! | [`frame`] | the canonical frame in which problems of free timing are searched, and the way back of their candidates |
 //! | [`free`] | multistart search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt fits on the torus, and a stopping rule by repeated hits of the best answer |
@@ -21,6 +22,7 @@
 //! | [`keeper`] | checkpoints of long searches: the state of a search at a batch boundary, and the keeper that saves it |
 //! | [`live`] | live fitting to a target that the user moves: known candidates follow it by warm starts, and the answers of a search join them |
 //! | [`local`] | the local searches by least squares, chosen by the timing |
+//! | [`motion`] | multistart search for the poses of a body with free timing: starts from dyads, joint fits, and a stopping rule by repeated hits |
 //! | [`multistart`] | multistart: Levenberg-Marquardt fits from many starts, in rounds |
 //! | [`nearest`] | positions at which a given linkage is nearest to a task's points: for linkages that were not placed by a search |
 //! | [`offered_cognates`] | the offer of Roberts cognates beside the candidates of a search |
@@ -32,6 +34,7 @@
 //! | [`reduced_fitness`] | fitness of a population search in reduced variables: ratios and at most two angles in, violation and cost out |
 //! | [`relaxed`] | search with one requirement left out, whose results are then fitted under all requirements |
 //! | [`repeats`] | repeated hits of the best answer, counted over independent rounds |
+//! | [`required`] | ends whose points have strayed to circuits or branches that the referee will refuse, and starts that lead back |
 //! | [`rounds`] | multistart search for prescribed timing in the physical parameters |
 //! | [`snap`] | snapping: lengths are brought to stock sizes, and the free parameters fitted again |
 //! | [`starts`] | starts of local searches: shapes drawn by type, positions by timing, the rest by linear least squares |
@@ -49,6 +52,7 @@ mod constants;
 pub mod context;
 pub mod continuation;
 mod driver;
+pub mod dyads;
 mod ellipse;
 pub mod errors_without;
 pub(crate) mod fixture;
@@ -58,6 +62,7 @@ pub mod front;
 pub mod keeper;
 pub mod live;
 mod local;
+mod motion;
 pub mod multistart;
 pub mod nearest;
 pub mod offered_cognates;
@@ -69,6 +74,7 @@ mod reassign;
 pub mod reduced_fitness;
 mod relaxed;
 mod repeats;
+mod required;
 mod rounds;
 pub mod snap;
 pub mod starts;

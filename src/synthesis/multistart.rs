@@ -10,8 +10,9 @@ pub use super::constants::multistart::{LONG_FIT, SHORT_FIT};
 
 use super::Context;
 use super::constants::multistart::{LONG, SCREEN, SETTLING, SHORT};
+use super::polish::reserve;
 use super::starts::Starts;
-use crate::judge::assess::assess;
+use crate::judge::assess::{assess, assess_on_curve};
 use crate::judge::rank::exact_cost;
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::mobility::wrapped;
@@ -22,7 +23,7 @@ use crate::task::forms::design_space::Design;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedFit;
-use crate::task::forms::torus::{Positions, TorusFit};
+use crate::task::forms::torus::{MotionFit, PathFit, Positions};
 use crate::task::{AngleOffset, Problem, Setting, Timing};
 use rayon::prelude::*;
 
@@ -182,11 +183,14 @@ pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
         let lack = fit.requirements().lack(start.setting.aim, &shape, &motion);
         return Some(cost + scale * lack * lack);
     }
-    let fit = TorusFit::new(problem, start.setting);
+    let fit = PathFit::new(problem, start.setting);
     if !fit.settle(&start.design, &mut start.positions) {
         return None;
     }
-    let cost = fit.cost(&start.design, &start.positions)?;
+    let cost = match problem.task().body() {
+        None => fit.cost(&start.design, &start.positions)?,
+        Some(_) => MotionFit::new(problem, start.setting).cost(&start.design, &start.positions)?,
+    };
     let shape = fit.space().shape(&start.design)?;
     let motion = fit.motion(&shape, &start.positions);
     let lack = fit.requirements().lack(start.setting.aim, &shape, &motion);
@@ -236,8 +240,16 @@ fn fit_with(context: Context<'_>, start: Start, options: &LmOptions) -> Fitted {
         let Some(fit) = TimedFit::new(problem, setting) else { return Fitted::NONE };
         solve(&fit, design, positions, options, &stop)
     } else {
-        let fit = TorusFit::new(problem, setting).in_order(&design, &positions);
-        solve(&fit, design, positions, options, &stop)
+        match problem.task().body() {
+            None => {
+                let fit = PathFit::new(problem, setting).in_order(&design, &positions);
+                solve(&fit, design, positions, options, &stop)
+            }
+            Some(_) => {
+                let fit = MotionFit::new(problem, setting).in_order(&design, &positions);
+                solve(&fit, design, positions, options, &stop)
+            }
+        }
     };
     let usable = !matches!(result.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
     let weight: f64 = problem.task().weights().iter().sum();
@@ -255,9 +267,13 @@ pub fn settle_positions(
     setting: Setting,
     positions: Positions,
 ) -> Option<Positions> {
-    let fit = TorusFit::at(context.problem, setting, design);
-    let options = LmOptions { hopeless_cost: f64::INFINITY, ..options(context.problem, SETTLING, u64::MAX) };
-    let result = solve(&fit, *design, positions, &options, &|| context.stopped());
+    let problem = context.problem;
+    let options = LmOptions { hopeless_cost: f64::INFINITY, ..options(problem, SETTLING, u64::MAX) };
+    let stop = || context.stopped();
+    let result = match problem.task().body() {
+        None => solve(&PathFit::at(problem, setting, design), *design, positions, &options, &stop),
+        Some(_) => solve(&MotionFit::at(problem, setting, design), *design, positions, &options, &stop),
+    };
     (!matches!(result.outcome, LmOutcome::NoStart)).then_some(result.state)
 }
 
@@ -275,7 +291,7 @@ pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
             AngleOffset::Fixed => 0.0,
             AngleOffset::Ground => linkage.ground_angle().to_degrees(),
         };
-        let written = problem.spec().task.path.timing.as_ref()?;
+        let written = problem.spec().task.timing.as_ref()?;
         debug_assert_eq!(written.crank_deg.len(), crank_angles.len());
         let crank_deg: Vec<f64> =
             written.crank_deg.iter().map(|deg| base + end.setting.direction * deg).collect();
@@ -286,5 +302,8 @@ pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
     let angles = end.positions.iter().map(|[e, _]| e.arg()).collect();
     let (crank_deg, assemblies) = unwrapped(problem, &linkage, angles, assemblies);
     let linkage = space.project(&linkage).ok()?;
-    assess(problem, &linkage, &crank_deg, &assemblies)
+    // Unless deviations count one by one, the frame is the one of the least errors.
+    let frame = (problem.frame_is_free() && reserve(problem, 1000) > 0)
+        .then(|| wrapped(space.offset(&end.design)).to_degrees());
+    assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), frame, None)
 }

@@ -1,9 +1,17 @@
 //! Positions at which a given linkage is nearest to a task's points: for linkages that were not placed by a search.
 
+use super::multistart::settle_positions;
+use super::{Budget, Context};
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
-use crate::mechanism::{AssemblyMode, CouplerCurve, FourBar, InputRange};
-use crate::task::{AngleOffset, Problem, Timing};
+use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, InputRange};
+use crate::task::forms::design_space::Shape;
+use crate::task::forms::rows::assembly_of;
+use crate::task::forms::torus::Positions;
+use crate::task::{AngleOffset, Problem, Setting, Timing};
+use std::f64::consts::TAU;
+use std::sync::atomic::AtomicBool;
 
 /// Returns the crank angles (degrees) and assemblies at the points; `None` if there is no position for one.
 ///
@@ -12,19 +20,79 @@ use crate::task::{AngleOffset, Problem, Timing};
 /// the least sum of squares if they are free, on the linkage's own t1.
 pub fn nearest_positions(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     match problem.task().timing() {
+        Timing::Free if problem.task().body().is_some() => of_body(problem, linkage),
         Timing::Free => free(problem, linkage),
         Timing::Prescribed { offset, .. } => prescribed(problem, linkage, *offset),
     }
 }
 
-fn free(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
-    let mobility = linkage.mobility();
-    let starts: Vec<f64> = match mobility.input {
-        InputRange::None => return None,
+/// Returns a crank angle on each circuit that the linkage's own t1 can be on.
+fn on_circuits(linkage: &FourBar) -> Vec<f64> {
+    match linkage.mobility().input {
+        InputRange::None => Vec::new(),
         InputRange::Full => vec![linkage.ground_angle()],
         InputRange::One(arc) => vec![arc.middle],
         InputRange::Two(arcs) => arcs.iter().map(|arc| arc.middle).collect(),
+    }
+}
+
+/// Places of the circuit at which a body is tried to lie at the first target.
+const TRIED: usize = 48;
+
+/// As [`free`] for a body that is fixed to the coupler in the way that gives the least errors: at several places of the
+/// circuit the body is taken to lie as at the first target with an angle; the best of these is fitted.
+fn of_body(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+    let task = problem.task();
+    let body = task.body()?;
+    let first = body.angles.iter().flatten().next()?;
+    let mut best: Option<(f64, f64, Vec<(f64, AssemblyMode)>)> = None;
+    for start in on_circuits(linkage) {
+        let curve = CouplerCurve::through(linkage, start, linkage.assembly(), DEFAULT_SAMPLES);
+        let samples: Vec<(Complex, f64, (f64, AssemblyMode))> = (0..DEFAULT_SAMPLES)
+            .filter_map(|i| {
+                let at = curve.position_at(TAU * i as f64 / DEFAULT_SAMPLES as f64);
+                let joints = linkage.position_with(at.0, at.1).joints()?;
+                Some((joints.coupler_point, (joints.follower_pin - joints.crank_pin).arg(), at))
+            })
+            .collect();
+        for (_, coupler, _) in samples.iter().step_by(DEFAULT_SAMPLES / TRIED) {
+            let frame = first - coupler;
+            let (mut sum, mut places) = (0.0, Vec::with_capacity(task.len()));
+            for (j, target) in task.points().iter().enumerate() {
+                let off = |(point, coupler, _): &&(Complex, f64, (f64, AssemblyMode))| {
+                    let turned = body.angles[j].map_or(0.0, |angle| wrapped(angle - coupler - frame));
+                    (target - point).norm_sqr() + (body.angle_weight * turned).powi(2)
+                };
+                let nearest = samples.iter().min_by(|one, other| off(one).total_cmp(&off(other)))?;
+                sum += task.weights()[j] * off(&nearest);
+                places.push(nearest.2);
+            }
+            if best.as_ref().is_none_or(|(least, ..)| sum < *least) {
+                best = Some((sum, frame, places));
+            }
+        }
+    }
+    let (_, frame, places) = best?;
+    let shape = Shape::from(linkage);
+    let position = |(angle, assembly): &(f64, AssemblyMode)| {
+        let joints = linkage.position_with(*angle, *assembly).joints()?;
+        let coupler = (joints.follower_pin - joints.crank_pin) / shape.coupler;
+        Some([Complex::from_polar(1.0, *angle), coupler])
     };
+    let positions: Option<Positions> = places.iter().map(position).collect();
+    let setting = Setting { aim: None, assembly: linkage.assembly(), direction: 1.0, side: linkage.side() };
+    let design = problem.space(linkage.side()).coordinates(&shape, frame);
+    let budget = Budget::new(&NEVER, None);
+    let fitted = settle_positions(Context::new(problem, &budget), &design, setting, positions?)?;
+    let angles = fitted.iter().map(|[e, _]| e.arg()).collect();
+    let assemblies = fitted.iter().map(|[e, u]| assembly_of(&shape, *e, *u)).collect();
+    Some(unwrapped(problem, linkage, angles, assemblies))
+}
+
+/// A search that nothing cancels.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+fn free(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let on_circuit = |start: f64| {
         let curve = CouplerCurve::through(linkage, start, linkage.assembly(), DEFAULT_SAMPLES);
         let mut sum = 0.0;
@@ -36,7 +104,10 @@ fn free(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyM
         }
         Some((sum, positions))
     };
-    let best = starts.into_iter().filter_map(on_circuit).min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let best = on_circuits(linkage)
+        .into_iter()
+        .filter_map(on_circuit)
+        .min_by(|one, other| one.0.total_cmp(&other.0))?;
     let (angles, assemblies): (Vec<f64>, Vec<AssemblyMode>) = best.1.into_iter().unzip();
     Some(unwrapped(problem, linkage, angles, assemblies))
 }
@@ -46,14 +117,14 @@ fn prescribed(
     linkage: &FourBar,
     offset: AngleOffset,
 ) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
-    let written = &problem.spec().task.path.timing.as_ref()?.crank_deg;
+    let written = &problem.spec().task.timing.as_ref()?.crank_deg;
     let assemblies = vec![linkage.assembly(); written.len()];
     let angles = |direction: f64, base_deg: f64| -> Vec<f64> {
         written.iter().map(|deg| base_deg + direction * deg).collect()
     };
     let sum = |direction: f64, base_deg: f64| {
         let radians: Vec<f64> = angles(direction, base_deg).iter().map(|d| d.to_radians()).collect();
-        problem.task().errors(linkage, &radians, &assemblies).map_or(f64::INFINITY, |e| e.objective)
+        problem.task().errors(linkage, &radians, &assemblies, None).map_or(f64::INFINITY, |e| e.objective)
     };
     let given = match offset {
         AngleOffset::Fixed => Some(0.0),

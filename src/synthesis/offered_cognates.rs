@@ -1,7 +1,7 @@
 //! The offer of Roberts cognates beside the candidates of a search.
 
 use super::Context;
-use crate::judge::assess::assess;
+use crate::judge::assess::assess_again;
 use crate::judge::cognates::{At, COGNATES, Merit, alternative, cognates, first_apart, has_error_of};
 use crate::judge::rank::sort;
 use crate::record::Candidate;
@@ -22,7 +22,7 @@ pub fn offer(context: Context<'_>, candidates: &mut Vec<Candidate>) {
         let first = forms.remove(0);
         if first.linkage != candidate.linkage {
             // The cognate takes the place, with its own figures.
-            match assess(problem, &first.linkage, &first.crank_deg, &first.t1_at) {
+            match assess_again(problem, &first) {
                 Some(judged) => *candidate = judged,
                 None => return,
             }

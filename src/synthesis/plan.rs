@@ -12,7 +12,7 @@ use super::multistart::{LONG_FIT, fit_and_judge, polish};
 use super::polish::{improve, reserve};
 use super::population::{self, Population};
 use super::{Context, Progress, SearchOutcome, continuation, local, relaxed};
-use crate::judge::assess::assess;
+use crate::judge::assess::{assess, assess_again};
 use crate::judge::rank::divided;
 use crate::mechanism::Complex;
 use crate::numbers::optimise::population::PopulationError;
@@ -78,7 +78,7 @@ impl Place {
     /// Returns the place of a problem.
     pub(super) fn of(problem: &Problem) -> Place {
         let centre = problem.task().centre();
-        if problem.spec().task.path.timing.is_none() {
+        if problem.spec().task.timing.is_none() {
             let frame = Frame::of(problem);
             if frame.exact(problem).is_some() { Place::Frame(frame) } else { Place::AsItIs }
         } else if centre.norm() > FAR * problem.task().size() {
@@ -131,9 +131,9 @@ impl Place {
 /// move: angles that are counted from the ground line then count from the moved line.
 fn moved_back(problem: &Problem, candidate: &Candidate, by: Complex) -> Option<Candidate> {
     let linkage = candidate.linkage.shifted(by).ok()?;
-    let timing = problem.spec().task.path.timing.as_ref();
+    let timing = problem.spec().task.timing.as_ref();
     match timing.filter(|timing| timing.offset == AngleOffset::Ground) {
-        None => assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at),
+        None => assess_again(problem, &Candidate { linkage, ..candidate.clone() }),
         Some(timing) => {
             let base = linkage.ground_angle().to_degrees();
             let crank_deg: Vec<f64> = timing.crank_deg.iter().map(|deg| base + deg).collect();
@@ -155,7 +155,7 @@ fn search_here(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
             run.local(LOCAL_SHARE);
             if run.gave_up() {
                 run.relaxed();
-                if !run.found.has_accepted() {
+                if !run.found.has_accepted() && problem.task().body().is_none() {
                     run.feasible()?;
                 }
             }

@@ -10,6 +10,7 @@ use super::constants::polish::{
     SAME_START, SHARE, STEPS,
 };
 use super::multistart::{Fitted, by_merit, fit_and_judge};
+use crate::judge::error::structural_error;
 use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
 use crate::judge::warm::start_at;
 use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
@@ -18,7 +19,8 @@ use crate::record::{Candidate, Evaluations, Figure};
 use crate::task::Problem;
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedFit;
-use crate::task::forms::torus::TorusFit;
+use crate::task::forms::torus::{MotionFit, PathFit};
+use crate::task::requirement::RequirementKind;
 use crate::task::spec::Objective;
 
 /// The random stream of the first round of hops; those of a multistart count up from 0.
@@ -32,8 +34,7 @@ const AT_LIMIT: f64 = 1e-4;
 
 /// Returns the evaluations of a budget that a search by least squares leaves to [`improve`].
 pub fn reserve(problem: &Problem, evaluations: u64) -> u64 {
-    let wanted =
-        problem.spec().solve.objective == Objective::MaxDeviation || problem.task().tolerances().is_some();
+    let wanted = problem.spec().solve.objective == Objective::MaxDeviation || problem.task().has_tolerances();
     if wanted { evaluations / SHARE } else { 0 }
 }
 
@@ -47,18 +48,28 @@ pub fn basins_wanted(problem: &Problem) -> usize {
 /// Returns whether a candidate is accepted, or would be if its polish brought it within the tolerances.
 pub fn promising(problem: &Problem, candidate: &Candidate) -> bool {
     let forbidden = candidate.defects.iter().any(|d| problem.spec().require.forbids(d));
-    !forbidden && candidate.requirements.iter().all(|r| r.met || r.name == "tolerance")
+    !forbidden && candidate.requirements.iter().all(|r| r.met || RequirementKind::names_tolerance(&r.name))
 }
 
-/// Returns the tolerances by which deviations are measured: 1 if none are given.
+/// Returns the tolerances by which deviations are measured: 1 if none are given. In a motion two a target: of the place,
+/// and of the angle as the length that it counts like; infinite where only the other one is limited.
 fn measures(problem: &Problem) -> Vec<f64> {
-    match problem.task().tolerances() {
-        None => vec![1.0; problem.task().len()],
-        Some(tolerances) => {
-            let least = LEAST_TOLERANCE * problem.task().size();
-            tolerances.iter().map(|t| (t * (1.0 - TOLERANCE_MARGIN)).max(least)).collect()
-        }
-    }
+    let task = problem.task();
+    let least = LEAST_TOLERANCE * task.size();
+    let inside = |t: f64| (t * (1.0 - TOLERANCE_MARGIN)).max(least);
+    let Some(body) = task.body() else {
+        return match task.tolerances() {
+            None => vec![1.0; task.len()],
+            Some(tolerances) => tolerances.iter().copied().map(inside).collect(),
+        };
+    };
+    let unless_given = if task.has_tolerances() { f64::INFINITY } else { 1.0 };
+    let both = |j: usize| {
+        let place = task.tolerances().map_or(unless_given, |tolerances| inside(tolerances[j]));
+        let angle = body.tolerances.as_ref().map_or(unless_given, |t| inside(body.angle_weight * t[j]));
+        [place, if body.angles[j].is_some() { angle } else { f64::INFINITY }]
+    };
+    (0..task.len()).flat_map(both).collect()
 }
 
 /// Minimises the largest deviation, in parts of the tolerances if there are any, until it has converged or, within
@@ -75,13 +86,13 @@ pub fn deviation_polish(context: Context<'_>, start: &Start, enough: f64, evalua
 pub fn finish(context: Context<'_>, start: &Start, evaluations: u64) -> Fitted {
     let problem = context.problem;
     let floor = 1e-3 * exact_objective(problem);
-    match (problem.spec().solve.objective, problem.task().tolerances()) {
+    match (problem.spec().solve.objective, problem.task().has_tolerances()) {
         (Objective::MaxDeviation, _) => deviation_polish(context, start, floor, evaluations),
-        (Objective::SumOfSquares, None) => {
+        (Objective::SumOfSquares, false) => {
             let exact = 1e-6 * exact_cost(problem);
             convex(context, start, &Goal::SumOfSquares, exact, evaluations).0
         }
-        (Objective::SumOfSquares, Some(_)) => {
+        (Objective::SumOfSquares, true) => {
             let tolerances = measures(problem);
             let nearest = deviation_polish(context, start, INSIDE, evaluations);
             let left = evaluations.saturating_sub(nearest.evaluations);
@@ -127,11 +138,19 @@ fn convex(
         let Some(fit) = TimedFit::new(problem, setting) else { return (Fitted::NONE, f64::INFINITY) };
         solve(&fit, goal, start.design, positions, &options, &stop)
     } else {
-        let fit = TorusFit::new(problem, setting);
-        if !fit.settle(&start.design, &mut positions) {
+        if !PathFit::new(problem, setting).settle(&start.design, &mut positions) {
             return (Fitted::NONE, f64::INFINITY);
         }
-        solve(&fit, goal, start.design, positions, &options, &stop)
+        match problem.task().body() {
+            None => {
+                let fit = PathFit::new(problem, setting);
+                solve(&fit, goal, start.design, positions, &options, &stop)
+            }
+            Some(_) => {
+                let fit = MotionFit::new(problem, setting);
+                solve(&fit, goal, start.design, positions, &options, &stop)
+            }
+        }
     };
     let usable = !matches!(result.outcome, ConvexOutcome::NoStart | ConvexOutcome::Stopped);
     let fitted = Fitted {
@@ -171,7 +190,7 @@ pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &m
         return;
     }
     let deviation = problem.spec().solve.objective == Objective::MaxDeviation;
-    let toleranced = problem.task().tolerances().is_some();
+    let toleranced = problem.task().has_tolerances();
     let worth: Vec<Candidate> = if deviation || toleranced {
         // Unless the largest deviation is the objective, an accepted candidate has no more to gain.
         let open = |c: &&Candidate| promising(problem, c) && (deviation || !c.accepted);
@@ -254,9 +273,7 @@ fn by_deviation<'c>(
 ) -> Vec<(f64, &'c Candidate)> {
     let task = problem.task();
     let deviation = |candidate: &Candidate| {
-        let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-        let error = task.errors(&candidate.linkage, &radians, &candidate.t1_at);
-        error.map_or(f64::INFINITY, |error| error.deviation(task.tolerances()))
+        structural_error(problem, candidate).map_or(f64::INFINITY, |error| error.deviation(task))
     };
     let mut measured: Vec<(f64, &Candidate)> = candidates.map(|c| (deviation(c), c)).collect();
     by_merit(&mut measured, usize::MAX);

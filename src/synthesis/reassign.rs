@@ -20,7 +20,7 @@ use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::task::Problem;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
-use crate::task::forms::torus::{Positions, TorusFit};
+use crate::task::forms::torus::{PathFit, Positions};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Number of samples around a circuit, evenly in its parameter.
@@ -127,7 +127,7 @@ pub fn reassigned(problem: &Problem, start: &Start) -> Reassigned {
         });
         pinned.min_by(|one, other| one.0.total_cmp(&other.0)).map_or(Vec::new(), |(_, positions)| positions)
     };
-    let fit = TorusFit::new(problem, start.setting);
+    let fit = PathFit::new(problem, start.setting);
     let cost = |positions: &Positions| fit.cost(&start.design, positions);
     let Some(now) = cost(&start.positions) else { return Reassigned { better: None, positions: count } };
     let mut better = None;
@@ -327,7 +327,7 @@ mod tests {
             for (order, closed) in [(true, true), (true, false), (false, true)] {
                 let (problem, start, size) = displaced(links, order, closed);
                 let better = reassigned(&problem, &start).better.expect("they are not at their places");
-                let fit = TorusFit::new(&problem, start.setting);
+                let fit = PathFit::new(&problem, start.setting);
                 let cost = fit.cost(&better.design, &better.positions).expect("a cost");
                 // Samples are about a hundredth of the curve apart.
                 assert!(cost < 40.0 * (0.02 * size).powi(2), "{links:?} {order:?} {closed}: {cost}");

@@ -11,7 +11,7 @@ use super::driver::Allowance;
 use super::multistart::{by_merit, fit_and_judge, promise};
 use super::polish::finish;
 use super::{Context, local};
-use crate::judge::assess::assess;
+use crate::judge::assess::assess_again;
 use crate::judge::loosen::Demand;
 use crate::judge::warm::start_at;
 use crate::record::{Candidate, Evaluations};
@@ -29,8 +29,7 @@ pub(super) fn led_in(
 ) -> (Vec<Candidate>, Evaluations) {
     let problem = context.problem;
     let ends = &ends[..ends.len().min(JUDGED)];
-    let mut found: Vec<Candidate> =
-        ends.par_iter().filter_map(|end| assess(problem, &end.linkage, &end.crank_deg, &end.t1_at)).collect();
+    let mut found: Vec<Candidate> = ends.par_iter().filter_map(|end| assess_again(problem, end)).collect();
     let mut spent = Evaluations::default();
     if most == 0 || found.iter().any(|candidate| candidate.accepted) {
         return (found, spent);
@@ -110,7 +109,7 @@ mod tests {
         let ends = local::search(Context::new(&relaxed, &budget), allowance).candidates;
         // Ends that meet the transmission angle already are left out: the fits have to do it.
         let beyond = |end: &Candidate| {
-            assess(&asked, &end.linkage, &end.crank_deg, &end.t1_at)
+            assess_again(&asked, end)
                 .is_some_and(|c| c.requirements.iter().any(|r| r.name == "transmission_deg_min" && !r.met))
         };
         let ends: Vec<Candidate> = ends.into_iter().filter(beyond).collect();

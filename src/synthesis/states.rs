@@ -27,6 +27,9 @@ pub struct SearchState {
     /// State of the multistart rounds of prescribed timing in the physical parameters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) rounds: Option<RoundsState>,
+    /// State of a motion search.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) motion: Option<RoundsState>,
     /// State of a population search.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) population: Option<RestartsState>,
@@ -138,7 +141,8 @@ pub struct TimedState {
     pub(super) binding_waves: u64,
 }
 
-/// The state of the multistart rounds of prescribed timing in the physical parameters between two batches.
+/// The state of the multistart rounds of prescribed timing in the physical parameters, or of a motion search, between two
+/// batches.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct RoundsState {
     pub(super) found: Vec<Candidate>,

@@ -5,7 +5,7 @@ use super::constants::tightened::{EVALUATIONS, FINISH, HOPELESS};
 use super::multistart::{Effort, judged, polish_until};
 use super::polish::{finish, reserve};
 use super::{Context, plan};
-use crate::judge::assess::assess;
+use crate::judge::assess::assess_again;
 use crate::judge::warm::start_at;
 use crate::record::{Axis, Candidate, Figures};
 use crate::task::Problem;
@@ -94,12 +94,12 @@ pub(super) fn searched_anew(
     spec.solve.evaluations = evaluations;
     spec.solve.method = Method::LeastSquares;
     // Tolerances and the largest deviation are left to the fits that follow.
-    spec.task.path.tolerance = None;
+    spec.task.tolerance = None;
     spec.solve.objective = Objective::SumOfSquares;
     spec.solve.candidates = answers;
     let tight = Problem::new(spec).ok()?;
     let outcome = plan::approximate(context.of(&tight).silent()).ok()?;
-    let judged = |c: &Candidate| assess(problem, &c.linkage, &c.crank_deg, &c.t1_at);
+    let judged = |c: &Candidate| assess_again(problem, c);
     let answers: Vec<Option<Candidate>> = outcome.candidates.par_iter().map(judged).collect();
     Some((answers.into_iter().flatten().collect(), outcome.evaluations.objective))
 }

@@ -1,6 +1,6 @@
 //! A builder of problems from points, with the defaults of a problem file.
 
-use super::spec::{DesignSpec, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec};
+use super::spec::{DesignSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec};
 use super::{AngleOffset, Problem, TaskError};
 
 /// A problem that is put together from its points; every part that is left out has the default of a problem file.
@@ -26,9 +26,8 @@ pub struct ProblemBuilder {
 impl Problem {
     /// Begins a problem: a path through these points, open, with free timing.
     pub fn builder(points: Vec<[f64; 2]>) -> ProblemBuilder {
-        let path = PathSpec { points, closed: false, weight: None, tolerance: None, timing: None, raw: None };
         let spec = ProblemSpec {
-            task: TaskSpec { path },
+            task: TaskSpec::path(points, false),
             design: DesignSpec::default(),
             require: RequireSpec::default(),
             solve: SolveSpec::default(),
@@ -41,35 +40,35 @@ impl ProblemBuilder {
     /// Makes the target a closed curve, or an open one.
     #[must_use]
     pub fn closed(mut self, closed: bool) -> Self {
-        self.spec.task.path.closed = closed;
+        self.spec.task.closed = closed;
         self
     }
 
     /// Sets the weights of the squared errors, one for each point, above 0.
     #[must_use]
     pub fn weights(mut self, weights: Vec<f64>) -> Self {
-        self.spec.task.path.weight = Some(weights);
+        self.spec.task.weight = Some(weights);
         self
     }
 
     /// Sets the largest error accepted at every point, 0 or more.
     #[must_use]
     pub fn tolerance(self, tolerance: f64) -> Self {
-        let points = self.spec.task.path.points.len();
+        let points = self.spec.task.points.len();
         self.tolerances(vec![tolerance; points])
     }
 
     /// Sets the largest error accepted at each point, 0 or more.
     #[must_use]
     pub fn tolerances(mut self, tolerances: Vec<f64>) -> Self {
-        self.spec.task.path.tolerance = Some(tolerances);
+        self.spec.task.tolerance = Some(tolerances);
         self
     }
 
     /// Prescribes the timing: the crank angle at each point, degrees, counter-clockwise positive, measured from `offset`.
     #[must_use]
     pub fn timing(mut self, crank_deg: Vec<f64>, offset: AngleOffset) -> Self {
-        self.spec.task.path.timing = Some(TimingSpec { crank_deg, offset });
+        self.spec.task.timing = Some(TimingSpec { crank_deg, offset });
         self
     }
 
@@ -108,7 +107,7 @@ impl ProblemBuilder {
     /// [`TaskError`] if the points with their lists make no task.
     pub fn spec(mut self) -> Result<ProblemSpec, TaskError> {
         let ProblemSpec { task, design, require, .. } = &mut self.spec;
-        let task = task.path.to_task()?;
+        let task = task.to_task()?;
         if require.longest_max.is_none() && !self.any_longest {
             require.longest_max = require.default_longest(design, &task);
         }

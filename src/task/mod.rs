@@ -6,27 +6,29 @@
 //! | [`defect`] | defects of a motion through target points: order, branch, circuit |
 //! | [`forms`] | the task as mathematics: design space, residuals with derivatives, requirements, fitness |
 //! | `limits` | intervals in which the parameters of a design lie |
-//! | [`path`] | the synthesis task: a path for the coupler point, with or without crank angles at its points |
 //! | [`problem`] | a checked `ProblemSpec`, and the discrete choices of a search besides the design vector (`Setting`) |
 //! | [`requirement`] | requirements on a linkage, one file each: key, parsing, limits with their outward side, unit and words |
 //! | [`resampling`] | smoothing and resampling of digitised points into a target |
 //! | [`similarity`] | similarities that map the axes to themselves and renumberings of a path's points, of a whole problem |
 //! | [`spec`] | the problem as data: every key of a problem file with its default filled in |
+//! | `task_spec` | the task as data: a list of targets, written as `path` or as `motion` |
+//! | `targets` | the synthesis task: a list of targets for the coupler point and, in poses, for the angle of the body, with or without crank angles |
 
 mod builder;
 pub mod defect;
 pub mod forms;
 mod limits;
-mod path;
 pub mod problem;
 pub mod requirement;
 pub mod resampling;
 pub mod similarity;
 pub mod spec;
+mod targets;
+mod task_spec;
 pub(crate) mod values;
 
 pub use builder::ProblemBuilder;
 pub use defect::Defect;
-pub(crate) use path::corners;
-pub use path::{AngleOffset, PathOptions, PathTask, Return, SMALLEST_SIZE, TaskError, Timing};
 pub use problem::{Problem, Setting};
+pub(crate) use targets::corners;
+pub use targets::{AngleOffset, Body, Return, SMALLEST_SIZE, Task, TaskError, TaskOptions, Timing};

@@ -9,14 +9,14 @@ use super::spec::{
 use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType};
 use crate::task::forms::design_space::DesignSpace;
 use crate::task::forms::rows::Requirements;
-use crate::task::{AngleOffset, PathTask, Return, TaskError, Timing};
+use crate::task::{AngleOffset, Return, Task, TaskError, Timing};
 use serde::{Deserialize, Serialize};
 
 /// A checked problem.
 #[derive(Clone, Debug)]
 pub struct Problem {
     spec: ProblemSpec,
-    task: PathTask,
+    task: Task,
     types: Vec<LinkageType>,
     grid: f64,
 }
@@ -37,7 +37,7 @@ pub struct Setting {
 
 /// Returns the task for the largest deviation. Its weights replace those of the file, which do not enter: with (least
 /// tolerance / tol_j)^2 least squares come nearest to it.
-fn measured_by_tolerances(task: PathTask) -> Result<PathTask, TaskError> {
+fn measured_by_tolerances(task: Task) -> Result<Task, TaskError> {
     let weights = match task.tolerances() {
         None => vec![1.0; task.len()],
         Some(tolerances) => {
@@ -80,9 +80,9 @@ impl Problem {
     /// Creates a problem from its resolved data.
     ///
     /// # Errors
-    /// As [`PathTask::new`]; and if the largest deviation is minimised and a tolerance is zero.
+    /// As [`Task::new`]; and if the largest deviation is minimised and a tolerance is zero.
     pub fn new(spec: ProblemSpec) -> Result<Self, TaskError> {
-        let mut task = spec.task.path.to_task()?;
+        let mut task = spec.task.to_task()?;
         if spec.solve.objective == Objective::MaxDeviation {
             task = measured_by_tolerances(task)?;
         }
@@ -124,7 +124,7 @@ impl Problem {
     }
 
     /// Returns the task.
-    pub fn task(&self) -> &PathTask {
+    pub fn task(&self) -> &Task {
         &self.task
     }
 
@@ -151,12 +151,18 @@ impl Problem {
         matches!(self.task.timing(), Timing::Prescribed { offset: AngleOffset::Free, .. })
     }
 
+    /// Returns whether the frame of a body, its angle from the coupler's direction, is an unknown of the design vector: in a
+    /// motion with free timing.
+    pub fn frame_is_free(&self) -> bool {
+        self.task.body().is_some() && matches!(self.task.timing(), Timing::Free)
+    }
+
     /// Returns the design space for a side of the coupler point.
     pub fn space(&self, side: CouplerSide) -> DesignSpace {
         DesignSpace::new(
             &self.spec.design,
             &self.task,
-            self.offset_is_free(),
+            self.offset_is_free() || self.frame_is_free(),
             self.spec.require.pivots_in,
             side,
         )

@@ -54,6 +54,12 @@ impl Similarity {
         90.0 * f64::from(self.turns) + if self.mirrors { -direction } else { direction }
     }
 
+    /// Returns the image of a body's angle, in degrees within half a turn.
+    pub fn direction(&self, angle: f64) -> f64 {
+        let image = self.degrees(angle);
+        image - 360.0 * (image / 360.0).round()
+    }
+
     /// Returns the similarity that takes every image back.
     #[must_use]
     pub fn inverse(&self) -> Self {
@@ -154,7 +160,7 @@ impl ProblemSpec {
     #[must_use]
     pub fn placed(&self, by: &Similarity) -> Self {
         let mut spec = self.clone();
-        let path = &mut spec.task.path;
+        let path = &mut spec.task;
         for point in path.points.iter_mut().chain(path.raw.iter_mut().flat_map(|raw| &mut raw.points)) {
             *point = by.point(*point);
         }
@@ -162,6 +168,10 @@ impl ProblemSpec {
             *deviation *= by.scale;
         }
         path.tolerance.iter_mut().flatten().for_each(|tolerance| *tolerance *= by.scale);
+        if let Some(body) = &mut path.body {
+            body.angle_weight *= by.scale;
+            body.angle_deg.iter_mut().flatten().for_each(|angle| *angle = by.direction(*angle));
+        }
         spec.design = by.design(&self.design);
         let require = &mut spec.require;
         for corners in [&mut require.pivots_in, &mut require.footprint_in].into_iter().flatten() {
@@ -182,10 +192,14 @@ impl ProblemSpec {
     #[must_use]
     pub fn renumbered(&self, by: Numbering) -> Self {
         let mut spec = self.clone();
-        let path = &mut spec.task.path;
+        let path = &mut spec.task;
         path.points = by.list(&path.points);
         for list in [&mut path.weight, &mut path.tolerance].into_iter().flatten() {
             *list = by.list(list);
+        }
+        if let Some(body) = &mut path.body {
+            body.angle_deg = by.list(&body.angle_deg);
+            body.tolerance_deg = body.tolerance_deg.as_ref().map(|list| by.list(list));
         }
         if by.reversed {
             if let Some(raw) = &mut path.raw {
@@ -206,9 +220,14 @@ impl ProblemSpec {
         let both =
             |of: &dyn Fn(f64) -> f64, limits: &mut Limits| *limits = Limits(of(limits.0), of(limits.1));
         let mut spec = self.clone();
-        let path = &mut spec.task.path;
+        let path = &mut spec.task;
         path.points.iter_mut().flatten().for_each(|x| *x = at(*x));
         path.tolerance.iter_mut().flatten().for_each(|x| *x = of_itself(*x));
+        if let Some(body) = &mut path.body {
+            body.angle_weight = of_itself(body.angle_weight);
+            // A radian has 64 degrees, roughly.
+            body.angle_deg.iter_mut().flatten().for_each(|angle| *angle = rounded_to(*angle, 64.0 * grid));
+        }
         let DesignSpec {
             crank_pivot,
             follower_pivot,
@@ -313,7 +332,7 @@ mod tests {
         let mut spec = crate::synthesis::fixture::problem(&points, true, require).spec().clone();
         spec.design = design;
         let mut list = || -> Option<Vec<f64>> { Some((0..n).map(|_| uniform(draws, 0.1, 2.0)).collect()) };
-        let path = &mut spec.task.path;
+        let path = &mut spec.task;
         (path.weight, path.tolerance) = (list(), list());
         let points = points.iter().map(|[x, y]| [x + 0.1, y - 0.1]).collect();
         path.raw = Some(RawPoints { points, smooth: Some(0.3), samples: None });
@@ -342,7 +361,7 @@ mod tests {
         let draws = &mut stream(3, 0);
         for case in 0..48 {
             let spec = problem(draws);
-            let n = spec.task.path.points.len();
+            let n = spec.task.points.len();
             let mut vector = || [uniform(draws, -9.0, 9.0), uniform(draws, -9.0, 9.0)];
             let (from, to) = (vector(), vector());
             let (mirrors, turns) = (case & 1 != 0, (case / 2 % 4) as u8);
@@ -377,13 +396,13 @@ mod tests {
         assert_eq!(image.require.direction, DirectionPolicy::Cw);
         let reversed = image.renumbered(Numbering { first: 3, reversed: true });
         assert_eq!(reversed.require.direction, DirectionPolicy::Ccw);
-        assert_eq!(reversed.task.path.points[1], image.task.path.points[2]);
+        assert_eq!(reversed.task.points[1], image.task.points[2]);
     }
 
     #[test]
     fn rounding_takes_differences_of_rounding_away() {
         let mut spec = problem(&mut stream(5, 0));
-        spec.task.path.raw = None;
+        spec.task.raw = None;
         let grid = 2.0_f64.powi(-36);
         let by = Similarity { from: [0.3, 0.7], scale: 1.7, to: [11.0, 3.1], ..Similarity::IDENTITY };
         let again = spec.placed(&by).placed(&by.inverse());

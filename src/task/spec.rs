@@ -6,13 +6,13 @@
 use crate::mechanism::MAX_MAGNITUDE;
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
-use crate::task::resampling::{resample, smooth};
-use crate::task::{AngleOffset, PathOptions, PathTask, TaskError, Timing};
+use crate::task::Task;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use crate::task::limits::Limits;
 pub use crate::task::requirement::{RequireSpec, TransmissionOver};
+pub use crate::task::task_spec::{BodySpec, RawPoints, TaskSpec, TimingSpec};
 
 /// A problem with every default filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -32,7 +32,7 @@ impl ProblemSpec {
     #[must_use]
     pub fn shifted(&self, by: [f64; 2]) -> Self {
         let mut spec = self.clone();
-        let path = &mut spec.task.path;
+        let path = &mut spec.task;
         for point in path.points.iter_mut().chain(path.raw.iter_mut().flat_map(|raw| &mut raw.points)) {
             *point = [point[0] + by[0], point[1] + by[1]];
         }
@@ -45,92 +45,6 @@ impl ProblemSpec {
             *b = [b[0] + by[0], b[1] + by[1], b[2] + by[0], b[3] + by[1]];
         }
         spec
-    }
-}
-
-/// The task; a path is the only kind.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct TaskSpec {
-    /// A path to trace.
-    pub path: PathSpec,
-}
-
-/// A path: points with their weights, tolerances and crank angles.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct PathSpec {
-    /// The target points.
-    pub points: Vec<[f64; 2]>,
-    /// Whether the target is a closed curve.
-    pub closed: bool,
-    /// One positive weight a point; they enter the objective only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub weight: Option<Vec<f64>>,
-    /// The largest error accepted, one a point.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub tolerance: Option<Vec<f64>>,
-    /// Prescribed timing; absent: free.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub timing: Option<TimingSpec>,
-    /// The points before they were smoothed or resampled; absent where `points` are what was given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub raw: Option<RawPoints>,
-}
-
-/// Points as they were digitised, with the smoothing and resampling that made the target's points of them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct RawPoints {
-    /// As they were given.
-    pub points: Vec<[f64; 2]>,
-    /// The standard deviation of the smoothing, a length along the path.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub smooth: Option<f64>,
-    /// The number of points taken evenly along the path.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub samples: Option<usize>,
-}
-
-impl RawPoints {
-    /// Returns the target's points: smoothed, then resampled.
-    pub fn target(&self, closed: bool) -> Vec<[f64; 2]> {
-        let smoothed = match self.smooth {
-            Some(deviation) => smooth(&self.points, closed, deviation),
-            None => self.points.clone(),
-        };
-        match self.samples {
-            Some(count) => resample(&smoothed, closed, count),
-            None => smoothed,
-        }
-    }
-}
-
-/// Prescribed crank angles.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct TimingSpec {
-    /// One a point, degrees, counter-clockwise positive.
-    pub crank_deg: Vec<f64>,
-    /// Their reference direction.
-    pub offset: AngleOffset,
-}
-
-impl PathSpec {
-    /// Returns the task, checked.
-    ///
-    /// # Errors
-    /// As [`PathTask::new`].
-    pub fn to_task(&self) -> Result<PathTask, TaskError> {
-        let timing = match &self.timing {
-            None => Timing::Free,
-            Some(t) => Timing::Prescribed {
-                crank_angles: t.crank_deg.iter().map(|d| d.to_radians()).collect(),
-                offset: t.offset,
-            },
-        };
-        let options = PathOptions {
-            weights: self.weight.clone(),
-            tolerances: self.tolerance.clone(),
-            closed: self.closed,
-        };
-        PathTask::new(self.points.clone(), timing, options)
     }
 }
 
@@ -189,7 +103,7 @@ impl DesignSpec {
     ///
     /// A quantity that other given keys determine gets no default of its own: B if `ground` or `ground_angle_deg` is
     /// given, the ground if both pivots are, coupler_x and coupler_y if `d` or `e` is given.
-    pub fn resolve(&mut self, task: &PathTask) {
+    pub fn resolve(&mut self, task: &Task) {
         let (size, centre) = (task.size(), task.centre());
         // No default allows coordinates that a linkage cannot have.
         let within = |low: f64, high: f64| Limits(low.max(-MAX_MAGNITUDE), high.min(MAX_MAGNITUDE));
@@ -413,7 +327,7 @@ pub struct SolveSpec {
 impl ProblemSpec {
     /// Returns the measure by which its candidates are ranked.
     pub fn measure(&self) -> Measure {
-        let path = &self.task.path;
+        let path = &self.task;
         match self.solve.objective {
             Objective::SumOfSquares if path.weight.iter().flatten().any(|w| *w != 1.0) => {
                 Measure::WeightedSum

@@ -160,6 +160,52 @@ impl<'de> Deserialize<'de> for XY {
     }
 }
 
+/// A pose: a place and an angle in degrees, or a place alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PoseNumbers {
+    pub place: [f64; 2],
+    pub angle_deg: Option<f64>,
+}
+
+impl<'de> Deserialize<'de> for PoseNumbers {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct PoseVisitor;
+        const EXPECTED: &str = "a pose [x, y, angle in degrees], or [x, y] for its place alone";
+        impl<'de> Visitor<'de> for PoseVisitor {
+            type Value = PoseNumbers;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(EXPECTED)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PoseNumbers, A::Error> {
+                let list = numbers(&Vec::deserialize(SeqAccessDeserializer::new(seq))?);
+                match *list.as_slice() {
+                    [x, y] => Ok(PoseNumbers { place: [x, y], angle_deg: None }),
+                    [x, y, angle] => Ok(PoseNumbers { place: [x, y], angle_deg: Some(angle) }),
+                    _ => {
+                        let count = list.len();
+                        Err(de::Error::custom(format_args!("expected {EXPECTED}, found a list of {count}")))
+                    }
+                }
+            }
+        }
+        from.deserialize_any(PoseVisitor)
+    }
+}
+
+impl JsonSchema for PoseNumbers {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "PoseNumbers".into()
+    }
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!(
+            {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 3}
+        )
+    }
+}
+
 /// A rectangle, given by four numbers.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
 #[schemars(inline)]

@@ -50,7 +50,7 @@ pub fn size(spec: &ProblemSpec) -> f64 {
 
 /// Returns the least and the greatest x (0) or y (1) of the points.
 fn range(spec: &ProblemSpec, k: usize) -> [f64; 2] {
-    let values = spec.task.path.points.iter().map(|p| p[k]);
+    let values = spec.task.points.iter().map(|p| p[k]);
     [values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max)]
 }
 

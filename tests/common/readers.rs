@@ -235,7 +235,7 @@ fn go_on(job: &Job, state: SearchState, writer: &Writer) {
 
 /// A candidate of a record as an entry of a comparison, with the figures of the record.
 pub fn entry(label: &str, record: &Record, index: usize) -> Option<Entry> {
-    let path = &record.problem.resolved.task.path;
+    let path = &record.problem.resolved.task;
     record.candidates.get(index).map(|candidate| Entry {
         label: label.to_owned(),
         candidate: candidate.clone(),

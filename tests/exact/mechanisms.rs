@@ -6,16 +6,16 @@ use linkwright::internals::judge::mechanisms::Mechanism;
 use linkwright::internals::judge::mechanisms::{mechanisms, solution_of};
 use linkwright::internals::mechanism::{Complex, xy};
 use linkwright::internals::numbers::nine_point::Target;
-use linkwright::internals::task::{PathOptions, PathTask, Timing};
+use linkwright::internals::task::{Task, TaskOptions, Timing};
 
 fn wms3() -> (Target, Vec<Verdict>) {
     let target = target(WMS3);
     (target, verdicts("wms3", &target))
 }
 
-fn task(target: &Target) -> PathTask {
+fn task(target: &Target) -> Task {
     let points = target.points.iter().map(|p| xy(*p)).collect();
-    PathTask::new(points, Timing::Free, PathOptions::default()).expect("a path")
+    Task::new(points, Timing::Free, TaskOptions::default()).expect("a path")
 }
 
 /// The mechanisms of each known class.

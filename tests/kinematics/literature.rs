@@ -5,7 +5,7 @@
 use crate::reference::{linkage, shipped_linkage};
 use linkwright::internals::judge::error::distances_to_curve;
 use linkwright::internals::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, LinkageType};
-use linkwright::internals::task::{AngleOffset, PathOptions, PathTask, Timing};
+use linkwright::internals::task::{AngleOffset, Task, TaskOptions, Timing};
 use std::f64::consts::{PI, TAU};
 
 fn read(folder: &str, name: &str) -> toml::Table {
@@ -19,7 +19,7 @@ fn numbers(value: &toml::Value) -> Vec<f64> {
     value.as_array().expect("a list").iter().map(number).collect()
 }
 
-fn task(problem: &toml::Table) -> PathTask {
+fn task(problem: &toml::Table) -> Task {
     let path = &problem["task"]["path"];
     let points = path["points"].as_array().expect("points");
     let points = points.iter().map(|p| [numbers(p)[0], numbers(p)[1]]).collect();
@@ -30,7 +30,7 @@ fn task(problem: &toml::Table) -> PathTask {
             offset: timing["offset"].clone().try_into().expect("an offset"),
         },
     };
-    PathTask::new(points, timing, PathOptions::default()).expect("a task")
+    Task::new(points, timing, TaskOptions::default()).expect("a task")
 }
 
 /// The literature's [ground, crank, coupler, follower, x, y, Ax, Ay, ground angle] with its sign.
@@ -42,7 +42,7 @@ fn from_vector(v: &[f64], s: i64) -> FourBar {
         .expect("a linkage")
 }
 
-fn sum_at(task: &PathTask, linkage: &FourBar, angles: &[f64]) -> f64 {
+fn sum_at(task: &Task, linkage: &FourBar, angles: &[f64]) -> f64 {
     let assemblies = vec![linkage.assembly(); angles.len()];
     task.errors(linkage, angles, &assemblies).map_or(f64::INFINITY, |e| e.sum_sq)
 }
@@ -60,7 +60,7 @@ fn least(f: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// What a linkage gives on a problem, as the problem's timing asks.
-fn sum_of(task: &PathTask, linkage: &FourBar) -> f64 {
+fn sum_of(task: &Task, linkage: &FourBar) -> f64 {
     match task.timing() {
         Timing::Free => {
             distances_to_curve(task.points(), linkage, 0.0, linkage.assembly()).expect("a curve").sum_sq
@@ -164,8 +164,8 @@ fn an_error_names_its_worst_point_and_weights_enter_the_objective_only() {
     let plain = task(&problem);
     let points = plain.points().iter().map(|p| [p.re, p.im]).collect();
     let weights = vec![1.0, 2.0, 3.0, 4.0, 5.0];
-    let options = PathOptions { weights: Some(weights.clone()), ..PathOptions::default() };
-    let weighted = PathTask::new(points, plain.timing().clone(), options).unwrap();
+    let options = TaskOptions { weights: Some(weights.clone()), ..TaskOptions::default() };
+    let weighted = Task::new(points, plain.timing().clone(), options).unwrap();
     let l = linkage([[0.0, 0.0], [3.7, 0.0]], [2.0, 4.0, 2.7, 2.37, 2.87], 1, 1);
     let angles = [30.0f64, 45.0, 60.0, 75.0, 90.0].map(f64::to_radians);
     let assemblies = [AssemblyMode::Plus; 5];

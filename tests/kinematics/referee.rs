@@ -10,28 +10,28 @@ use linkwright::internals::judge::referee::{UsedMotion, Verdict, judge};
 use linkwright::internals::mechanism::{
     AssemblyMode, Complex, CouplerSide, FourBar, InputRange, Joints, LinkageType, NaturalCoordinates,
 };
-use linkwright::internals::task::{AngleOffset, Defect, PathOptions, PathTask, Timing};
+use linkwright::internals::task::{AngleOffset, Defect, Task, TaskOptions, Timing};
 use std::f64::consts::{PI, TAU};
 
 /// n distinct points; with `repeated` the last is the first.
-fn task(n: usize, timing: Timing, repeated: bool) -> PathTask {
+fn task(n: usize, timing: Timing, repeated: bool) -> Task {
     let mut points: Vec<[f64; 2]> = (0..n).map(|j| [j as f64, 0.5 * (j * j) as f64]).collect();
     if repeated {
         points[n - 1] = points[0];
     }
-    PathTask::new(points, timing, PathOptions::default()).expect("a task")
+    Task::new(points, timing, TaskOptions::default()).expect("a task")
 }
 
-fn free(n: usize) -> PathTask {
+fn free(n: usize) -> Task {
     task(n, Timing::Free, false)
 }
 
-fn prescribed(crank_angles: &[f64]) -> PathTask {
+fn prescribed(crank_angles: &[f64]) -> Task {
     let timing = Timing::Prescribed { crank_angles: crank_angles.to_vec(), offset: AngleOffset::Fixed };
     task(crank_angles.len(), timing, false)
 }
 
-fn verdict(task: &PathTask, l: &FourBar, places: &[(f64, AssemblyMode)]) -> Verdict {
+fn verdict(task: &Task, l: &FourBar, places: &[(f64, AssemblyMode)]) -> Verdict {
     let (angles, assemblies): (Vec<f64>, Vec<AssemblyMode>) = places.iter().copied().unzip();
     judge(task, l, &angles, &assemblies)
 }
@@ -525,7 +525,7 @@ fn a_rocking_crank_that_keeps_its_order_only_through_toggles_has_a_branch_defect
         let p = linkage.position(a).joints().expect("within reach").coupler_point;
         [p.re, p.im]
     });
-    let task = PathTask::new(points.to_vec(), Timing::Free, PathOptions::default()).expect("a path");
+    let task = Task::new(points.to_vec(), Timing::Free, TaskOptions::default()).expect("a path");
     let verdict = judge(&task, &linkage, &at, &[AssemblyMode::Plus; 3]);
     assert_eq!(names(&verdict), ["branch"]);
     assert!(verdict.motion.transmission().worst() < 1e-6, "the toggles are part of the motion");

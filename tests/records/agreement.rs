@@ -54,7 +54,7 @@ fn verify_agrees_with_every_record_that_a_run_writes() {
         let case = wide_case(SEED, index)?;
         count(&problems, true);
         let spec = &case.file.spec;
-        let [weight, tolerance] = [&spec.task.path.weight, &spec.task.path.tolerance];
+        let [weight, tolerance] = [&spec.task.weight, &spec.task.tolerance];
         let beside = format!(
             "weight {weight:?}, tolerance {tolerance:?}, advice {}, closing {:?}",
             spec.solve.advice, spec.require.closing

@@ -177,7 +177,7 @@ fn changes_that_are_typed_give_the_very_problem_that_was_proved() {
 #[test]
 fn a_tolerance_that_is_set_by_hand_takes_the_place_of_a_column() {
     let file = load(&example("csv-tolerances"), &[("task.path.tolerance", "0.75")]);
-    assert!(file.spec.task.path.tolerance.expect("it has one").iter().all(|t| *t == 0.75));
+    assert!(file.spec.task.tolerance.expect("it has one").iter().all(|t| *t == 0.75));
 }
 
 /// A limit that is typed a little back towards what was asked is no longer enough, as far as the same search sees:

@@ -9,7 +9,7 @@ use linkwright::internals::synthesis::starts::Starts;
 use linkwright::internals::task::Problem;
 use linkwright::internals::task::forms::start::Start;
 use linkwright::internals::task::forms::timed::TimedFit;
-use linkwright::internals::task::forms::torus::TorusFit;
+use linkwright::internals::task::forms::torus::PathFit;
 
 /// Differences of 1e-6 of a number near 1 carry 1e-10 of rounding and 1e-12 of curvature; starts near a toggle
 /// have third derivatives of up to some thousands.
@@ -134,7 +134,7 @@ fn residuals_tangents_and_constraints_agree_with_central_differences() {
                 }
                 derivative_error(&fit, &design, &Vec::new(), &steps(&fit, &design), STEP)
             } else {
-                let fit = TorusFit::new(&problem, setting);
+                let fit = PathFit::new(&problem, setting);
                 if !fit.settle(&design, &mut positions) {
                     continue;
                 }
@@ -171,7 +171,7 @@ fn a_step_never_leaves_the_bounds_and_the_best_point_is_returned() {
                 let end = solve(&fit, start.design, Vec::new(), &options, &|| false);
                 (end.x, end.cost, before, end.outcome, *fit.bounds())
             } else {
-                let fit = TorusFit::new(&problem, start.setting);
+                let fit = PathFit::new(&problem, start.setting);
                 let before = fit.cost(&start.design, &start.positions);
                 let end = solve(&fit, start.design, start.positions, &options, &|| false);
                 (end.x, end.cost, before, end.outcome, *fit.bounds())

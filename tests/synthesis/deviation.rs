@@ -26,7 +26,7 @@ fn true_record(file: ProblemFile) -> Record {
 
 /// The errors at the points, largest first.
 fn errors(record: &Record, candidate: &Candidate) -> Vec<f64> {
-    let task = record.problem.resolved.task.path.to_task().expect("it is one");
+    let task = record.problem.resolved.task.to_task().expect("it is one");
     let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
     let error = task.errors(&candidate.linkage, &radians, &candidate.t1_at).expect("it closes");
     let mut list: Vec<f64> = error.structural.iter().map(|e| e.norm()).collect();
@@ -112,10 +112,10 @@ fn no_small_change_of_the_linkage_lessens_the_largest_error() {
 fn tolerances_are_the_unit_of_the_deviation() {
     let mut file = literature("k18", &[LARGEST]);
     let tolerances: Vec<f64> = (0..18).map(|j| if j < 9 { 0.02 } else { 0.06 }).collect();
-    file.spec.task.path.tolerance = Some(tolerances.clone());
+    file.spec.task.tolerance = Some(tolerances.clone());
     let record = true_record(file);
     let best = &record.candidates[0];
-    let task = record.problem.resolved.task.path.to_task().expect("it is one");
+    let task = record.problem.resolved.task.to_task().expect("it is one");
     let radians: Vec<f64> = best.crank_deg.iter().map(|deg| deg.to_radians()).collect();
     let error = task.errors(&best.linkage, &radians, &best.t1_at).expect("it closes");
     let parts: Vec<f64> = error.structural.iter().zip(&tolerances).map(|(e, t)| e.norm() / t).collect();
@@ -165,7 +165,7 @@ fn candidates_are_in_the_order_of_the_largest_part_of_a_tolerance_and_that_is_wh
 #[test]
 fn a_weighted_sum_that_ranks_is_shown() {
     let mut file = literature("k18", &[("solve.evaluations", "20000")]);
-    file.spec.task.path.weight = Some((0..18).map(|j| 1.0 + f64::from(j)).collect());
+    file.spec.task.weight = Some((0..18).map(|j| 1.0 + f64::from(j)).collect());
     let record = true_record(file);
     let page = candidates_table(&record, Colour::Never);
     assert!(page.contains("weighted sq") && !page.contains("sum of sq  "), "{page}");
@@ -177,7 +177,7 @@ fn a_weighted_sum_that_ranks_is_shown() {
 fn weights_do_not_enter_the_largest_deviation() {
     let plain = literature("k18", &[LARGEST]);
     let mut weighted = literature("k18", &[LARGEST]);
-    weighted.spec.task.path.weight = Some((0..18).map(|j| 1.0 + f64::from(j)).collect());
+    weighted.spec.task.weight = Some((0..18).map(|j| 1.0 + f64::from(j)).collect());
     assert_eq!(run_on(2, plain).candidates, true_record(weighted).candidates);
 }
 

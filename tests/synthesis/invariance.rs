@@ -73,7 +73,7 @@ pub fn target(index: u64, evaluations: u64) -> (&'static str, ProblemSpec) {
 /// The names and the images in which a problem is solved again.
 fn images(index: u64, spec: &ProblemSpec) -> Vec<(&'static str, Similarity, Numbering)> {
     let draws = &mut stream(12, index);
-    let path = &spec.task.path;
+    let path = &spec.task;
     let task = path.to_task().expect("a path");
     let (n, size) = (path.points.len(), task.size());
     let shift = [(); 2].map(|()| uniform(draws, -10.0, 10.0) * size);
@@ -122,7 +122,7 @@ fn apart(one: &CouplerCurve, back: &Similarity, other: &CouplerCurve) -> f64 {
 
 /// Whether the first candidates draw the same curve, and whether all do, as sets.
 fn alike(one: &Record, other: &Record, by: &Similarity) -> (bool, bool) {
-    let size = one.problem.resolved.task.path.to_task().expect("a path").size();
+    let size = one.problem.resolved.task.to_task().expect("a path").size();
     let [ones, others] = [one, other].map(|record| record.candidates.iter().map(curve).collect::<Vec<_>>());
     let same = |one: &CouplerCurve, other: &CouplerCurve| {
         apart(other, &by.inverse(), one) <= SAME * size && apart(one, by, other) <= SAME * size * by.scale

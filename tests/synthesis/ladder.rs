@@ -60,7 +60,7 @@ fn a_problem_that_asks_for_less_is_never_worse() {
         let errors = records.each_ref().map(least_error);
         let factor = largest_factor(&errors);
         if factor > NEVER_WORSE {
-            let n = spec.task.path.points.len();
+            let n = spec.task.points.len();
             let ends = records.map(|r| (r.termination.reason, r.evaluations.objective));
             println!("{kind} {index} of {n} points: {factor:.4} in {errors:?}, {ends:?}");
             worse += 1;

@@ -21,7 +21,7 @@ fn problem(offset: &str, design: &str) -> Problem {
     );
     let mut spec = parse(&text).spec;
     let weights = WEIGHTED.trim_start_matches("weight = [").trim_end_matches("]\n");
-    spec.task.path.weight = Some(weights.split(", ").map(|w| w.parse().expect("a number")).collect());
+    spec.task.weight = Some(weights.split(", ").map(|w| w.parse().expect("a number")).collect());
     Problem::new(spec).expect("it is one")
 }
 

@@ -182,8 +182,8 @@ fn a_link_that_leaves_the_folder_is_refused_unless_it_is_typed() {
     assert_eq!(refused.message, "the points file lies outside the folder of the problem file: it is a link");
     // What a person types is meant.
     let typed = [("task.path.file".to_string(), secret.display().to_string())];
-    assert_eq!(problem_file::load(&problem, &typed).unwrap().spec.task.path.points.len(), 2);
-    assert_eq!(problem_file::from_points_file(&link, &[]).unwrap().spec.task.path.points.len(), 2);
+    assert_eq!(problem_file::load(&problem, &typed).unwrap().spec.task.points.len(), 2);
+    assert_eq!(problem_file::from_points_file(&link, &[]).unwrap().spec.task.points.len(), 2);
     // A link that stays inside is a file like any other.
     std::fs::write(folder.path().join("here.csv"), "x,y\n0,0\n3,4\n").unwrap();
     std::fs::remove_file(&link).unwrap();

@@ -219,10 +219,8 @@ fn smoothed_points_are_scored_against_the_raw_ones_and_verify_knows() {
     let lies: [(&str, Lie); 4] = [
         ("error.to_raw.rms", |r| r.candidates[0].error.to_raw.as_mut().expect("there").rms *= 0.9),
         ("error.to_raw is", |r| r.candidates[0].error.to_raw = None),
-        ("task.path.points", |r| {
-            r.problem.resolved.task.path.raw.as_mut().expect("there").smooth = Some(7.0)
-        }),
-        ("task.path.points", |r| r.problem.resolved.task.path.points[3][0] += 1e-3),
+        ("task.path.points", |r| r.problem.resolved.task.raw.as_mut().expect("there").smooth = Some(7.0)),
+        ("task.path.points", |r| r.problem.resolved.task.points[3][0] += 1e-3),
     ];
     for (what, lie) in lies {
         let mut record = honest.clone();

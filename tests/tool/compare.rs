@@ -329,7 +329,7 @@ fn a_record_that_was_changed_is_not_believed() {
     assert_eq!(told["rows"][1]["recorded_differently"].as_array().map(Vec::len), Some(2), "{told}");
     // A list that is too short is no reason to panic: the nearest positions are taken.
     record.candidates[0].crank_deg.truncate(3);
-    record.problem.resolved.task.path.points[0][0] += 0.001;
+    record.problem.resolved.task.points[0][0] += 0.001;
     fs::write(&path, serde_json::to_string(&record).expect("JSON")).expect("there is room");
     let (code, text, _) = linkwright(folder.path(), &["compare", "r:1"]);
     assert_eq!(code, 1);

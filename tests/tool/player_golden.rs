@@ -84,7 +84,7 @@ fn golden() -> Value {
     let mut one_branch = rocking();
     one_branch.candidates[0].crank_deg.truncate(2);
     one_branch.candidates[0].t1_at.truncate(2);
-    one_branch.problem.resolved.task.path.points.truncate(2);
+    one_branch.problem.resolved.task.points.truncate(2);
     let records = [k18(), rocking(), one_branch, shapes(), detail()];
     json!({
         "omega": INPUT.speed_rad_s,

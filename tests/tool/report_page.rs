@@ -246,7 +246,7 @@ fn five_candidates_take_less_than_500_kb() {
         .map(|p| [p.re, p.im + 0.01])
         .collect();
     let mut many = record("five thousand points", path(&points, true));
-    let task = many.problem.resolved.task.path.to_task().expect("a task");
+    let task = many.problem.resolved.task.to_task().expect("a task");
     let t1 = vec![AssemblyMode::Plus; angles.len()];
     many.candidates = (1..=5).map(|rank| candidate(rank, rocker, &task, &angles, &t1)).collect();
     let page = report_html(&many, 0);

@@ -539,7 +539,7 @@ fn a_problem_begins_with_all_that_it_says_and_one_of_too_many_points_is_refused(
     let reply = timed.asks("GET", "/beginning.json", &[("Cookie", &cookie)], b"");
     let ask: Value = serde_json::from_str(reply.0.split("\r\n\r\n").nth(1).expect("a body")).expect("JSON");
     let before = crate::common::load(&root.join("problems/literature/e5.toml"), &[]).spec;
-    assert_eq!(ask["timing"]["crank_deg"].as_array().map(Vec::len), Some(before.task.path.points.len()));
+    assert_eq!(ask["timing"]["crank_deg"].as_array().map(Vec::len), Some(before.task.points.len()));
     assert!(ask["kept"]["design.a"].is_string(), "{ask}");
     let text = timed.posts(&cookie, "/problem.toml", ask.to_string().as_bytes()).0;
     assert_eq!(crate::common::parse(text.split("\r\n\r\n").nth(1).expect("a body")).spec, before);

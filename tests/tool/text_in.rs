@@ -33,7 +33,7 @@ fn silent_keys_get_the_documented_defaults() {
     assert_eq!(file.spec.require, RequireSpec { longest_max: Some(15.0), ..RequireSpec::default() });
     assert_eq!(file.spec.require.link_ratio_max, 20.0);
     assert_eq!(file.spec.solve, SolveSpec::default());
-    let path = file.spec.task.path;
+    let path = file.spec.task;
     assert!(!path.closed && path.weight.is_none() && path.tolerance.is_none() && path.timing.is_none());
 }
 
@@ -145,7 +145,7 @@ population = 60
 "#,
     );
     assert_eq!((file.name.as_str(), file.unit), ("every key", Some(Unit::In)));
-    let path = &file.spec.task.path;
+    let path = &file.spec.task;
     assert!(path.closed);
     assert_eq!(path.tolerance, Some(vec![0.25; 3]));
     let timing = path.timing.as_ref().unwrap();
@@ -205,20 +205,20 @@ fn overrides_mean_what_the_keys_of_the_file_mean() {
     assert_eq!(file.spec.solve.genetic.population, 40);
     assert_eq!(file.spec.design.a, Some(Limits(1.0, 2.0)));
     assert_eq!((file.name.as_str(), file.unit), ("second try", Some(Unit::Mm)));
-    assert_eq!(file.spec.task.path.points.len(), 3);
+    assert_eq!(file.spec.task.points.len(), 3);
     assert_eq!(set(&[("solve.seed", "7")]).name, "arm");
     let inline = "format = 1\ntask = {path = {points = [[0, 0], [1, 1]]}}\nsolve.seed = 3\n";
     let pairs = [("task.path.closed".into(), "true".into()), ("solve.genetic.elites".into(), "3".into())];
     let file = problem_file::parse("arm.toml", inline, None, &pairs).unwrap_or_else(|d| panic!("{d}"));
-    assert!(file.spec.task.path.closed && file.spec.solve.seed == 3 && file.spec.solve.genetic.elites == 3);
+    assert!(file.spec.task.closed && file.spec.solve.seed == 3 && file.spec.solve.genetic.elites == 3);
 }
 
 #[test]
 fn equal_neighbours_at_equal_crank_angles_are_accepted() {
     let text = "format = 1\n[task.path]\npoints = [[0, 0], [3, 4], [3, 4], [0, 0]]\n\
                 [task.path.timing]\ncrank_deg = [0, 20, 380, 360]\n";
-    assert_eq!(parsed(text).spec.task.path.points.len(), 4);
-    assert_eq!(parsed(&PLAIN.replace("[3, 4]", "[3, 4], [0, 0]")).spec.task.path.points.len(), 3);
+    assert_eq!(parsed(text).spec.task.points.len(), 4);
+    assert_eq!(parsed(&PLAIN.replace("[3, 4]", "[3, 4], [0, 0]")).spec.task.points.len(), 3);
 }
 
 #[test]
@@ -294,24 +294,24 @@ fn a_points_file_gives_points_timing_weights_and_tolerances() {
     std::fs::write(&toml, "format = 1\n[task.path]\nfile = \"heart (2).csv\"\n[solve]\nseed = 3\n").unwrap();
     let named = problem_file::load(&toml, &[]).unwrap();
     assert_eq!((named.name.as_str(), &named.spec), ("heart", &bare.spec));
-    let path = named.spec.task.path;
+    let path = named.spec.task;
     assert_eq!((path.weight, path.tolerance), (Some(vec![1.0, 2.0]), Some(vec![0.1, 0.2])));
     let timing = path.timing.unwrap();
     assert_eq!((timing.crank_deg, timing.offset), (vec![0.0, 20.0], AngleOffset::Free));
 
     let offset = [("task.path.timing.offset".into(), "fixed".into())];
     let fixed = problem_file::load(&toml, &offset).unwrap();
-    assert_eq!(fixed.spec.task.path.timing.unwrap().offset, AngleOffset::Fixed);
+    assert_eq!(fixed.spec.task.timing.unwrap().offset, AngleOffset::Fixed);
 }
 
 #[test]
 fn tolerances_and_weights_of_points_can_stand_beside_them() {
     let text = format!("{PLAIN}tolerance = [0.1, 0]\nweight = [1, 2.5]\n");
-    let path = parsed(&text).spec.task.path;
+    let path = parsed(&text).spec.task;
     assert_eq!((path.tolerance, path.weight), (Some(vec![0.1, 0.0]), Some(vec![1.0, 2.5])));
     // What is typed takes its place, for all points.
     let typed = [("task.path.tolerance".into(), "0.3".into())];
-    let path = problem_file::parse("arm.toml", &text, None, &typed).unwrap().spec.task.path;
+    let path = problem_file::parse("arm.toml", &text, None, &typed).unwrap().spec.task;
     assert_eq!(path.tolerance, Some(vec![0.3; 2]));
     for (lines, line, says) in [
         ("tolerance = [0.1]", 4, "2 points and 1 tolerance"),
@@ -350,9 +350,9 @@ fn digitised_points_are_smoothed_and_resampled_and_kept() {
         })
         .collect();
     let text = format!("format = 1\n[task.path]\npoints = [{}]\n", points.join(", "));
-    let plain = parsed(&text).spec.task.path;
+    let plain = parsed(&text).spec.task;
     assert!(plain.raw.is_none());
-    let smooth = parsed(&format!("{text}smooth = 4\n")).spec.task.path;
+    let smooth = parsed(&format!("{text}smooth = 4\n")).spec.task;
     assert_eq!(smooth.points.len(), 40);
     let raw = smooth.raw.clone().expect("kept");
     assert_eq!((&raw.points, raw.smooth, raw.samples), (&plain.points, Some(4.0), None));
@@ -362,7 +362,7 @@ fn digitised_points_are_smoothed_and_resampled_and_kept() {
     };
     assert!(off(&smooth.points) < 0.2 * off(&plain.points), "{} {}", off(&smooth.points), off(&plain.points));
 
-    let both = parsed(&format!("{text}smooth = 4\nsamples = 15\n")).spec.task.path;
+    let both = parsed(&format!("{text}smooth = 4\nsamples = 15\n")).spec.task;
     let steps: Vec<f64> =
         both.points.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).collect();
     let mean = steps.iter().sum::<f64>() / 14.0;
@@ -380,7 +380,7 @@ fn a_drawing_is_a_target_of_a_problem_and_by_itself() {
     std::fs::write(&svg, drawing).unwrap();
     let bare = problem_file::load_any(&svg, &[]).unwrap();
     assert_eq!((bare.name.as_str(), bare.unit, bare.warnings.len()), ("ring", Some(Unit::Mm), 1));
-    assert!(bare.spec.task.path.closed && bare.spec.task.path.points.len() == 60);
+    assert!(bare.spec.task.closed && bare.spec.task.points.len() == 60);
     let text = problem_template("my ring", Some("ring.svg")).unwrap();
     let named =
         problem_file::parse("r.toml", &text, Some(folder.path()), &[]).unwrap_or_else(|d| panic!("{d}"));
@@ -392,9 +392,9 @@ fn a_drawing_is_a_target_of_a_problem_and_by_itself() {
     };
     let small = set(&[("task.path.svg_id", "small"), ("task.path.samples", "4"), ("unit", "cm")]);
     assert!(small.warnings.is_empty() && small.unit == Some(Unit::Cm));
-    let path = small.spec.task.path;
+    let path = small.spec.task;
     assert!(path.points.len() == 4 && (path.points[0][0] - 0.5).abs() < 1e-12, "{:?}", path.points);
-    assert!(!set(&[("task.path.closed", "false")]).spec.task.path.closed);
+    assert!(!set(&[("task.path.closed", "false")]).spec.task.closed);
 }
 
 #[test]
@@ -402,7 +402,7 @@ fn the_template_runs_as_it_is() {
     let text = problem_template("my arm", None).unwrap();
     let file = problem_file::parse("arm.toml", &text, None, &[]).unwrap_or_else(|d| panic!("{d}"));
     assert_eq!(file.name, "my arm");
-    assert!(file.warnings.is_empty() && file.spec.task.path.closed);
+    assert!(file.warnings.is_empty() && file.spec.task.closed);
     assert_eq!(file.spec.require.types, [LinkageType::CrankRocker, LinkageType::DoubleCrank]);
 
     let folder = tempfile::tempdir().unwrap();
@@ -410,7 +410,7 @@ fn the_template_runs_as_it_is() {
     let text = problem_template("arm", Some("p \"1\".csv")).unwrap();
     let file =
         problem_file::parse("arm.toml", &text, Some(folder.path()), &[]).unwrap_or_else(|d| panic!("{d}"));
-    assert_eq!(file.spec.task.path.points.len(), 2);
+    assert_eq!(file.spec.task.points.len(), 2);
     assert!(problem_template("../arm", None).is_err());
 }
 
@@ -429,7 +429,7 @@ fn every_commented_key_of_the_template_works() {
     let file =
         problem_file::parse("arm.toml", &active, None, &[]).unwrap_or_else(|d| panic!("{d}\n{active}"));
     assert!(file.warnings.is_empty(), "{}", file.warnings[0]);
-    assert!(file.spec.task.path.timing.is_some() && file.spec.require.footprint_in.is_some());
+    assert!(file.spec.task.timing.is_some() && file.spec.require.footprint_in.is_some());
     assert!(file.spec.design.ground.is_some() && file.spec.solve.time_limit_s.is_some());
 }
 

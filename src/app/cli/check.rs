@@ -34,7 +34,7 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
     }
     if problem_file::is_drawing(path) {
         let file = problem_file::from_points_file(path, &[])?;
-        let drawn = &file.spec.task.path;
+        let drawn = &file.spec.task;
         let shape = if drawn.closed { "a closed" } else { "an open" };
         let unit = file.unit.map_or("user units", |unit| unit.label());
         let (n, size) = (drawn.points.len(), drawn.to_task().map_or(0.0, |task| task.size()));
@@ -67,7 +67,7 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
         return Ok((escaped(&summary), Vec::new()));
     }
     let file = problem_file::load(path, &[])?;
-    let target = &file.spec.task.path;
+    let target = &file.spec.task;
     let timing = if target.timing.is_some() { "prescribed" } else { "free" };
     let summary =
         format!("problem {}: {} points, {timing} timing, runs as it is", file.name, target.points.len());

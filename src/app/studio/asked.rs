@@ -4,8 +4,8 @@ use super::messages::{Ask, Known};
 use crate::files::diagnostic::Diagnostic;
 use crate::files::problem_file::{self, ProblemFile};
 use crate::mechanism::MAX_MAGNITUDE;
-use crate::task::spec::{DesignSpec, ProblemSpec, RawPoints, RequireSpec, SolveSpec, TaskSpec};
-use crate::task::{AngleOffset, PathTask, TaskError};
+use crate::task::spec::{DesignSpec, ProblemSpec, RawPoints, RequireSpec, SolveSpec};
+use crate::task::{AngleOffset, Task, TaskError};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -266,7 +266,7 @@ impl Ask {
     /// # Errors
     /// [`NotHere`] if the studio cannot hold it.
     pub fn of(problem: &ProblemFile) -> Result<Ask, NotHere> {
-        let ProblemSpec { task: TaskSpec { path }, require, solve, .. } = &problem.spec;
+        let ProblemSpec { task: path, require, solve, .. } = &problem.spec;
         let n = path.points.len();
         if !(FEWEST_POINTS..=MOST_POINTS).contains(&n) {
             return Err(NotHere::Points(n));
@@ -328,7 +328,7 @@ fn told(spec: &ProblemSpec) -> String {
 
 fn without_raw(spec: &ProblemSpec) -> ProblemSpec {
     let mut spec = spec.clone();
-    spec.task.path.raw = None;
+    spec.task.raw = None;
     spec
 }
 
@@ -358,7 +358,7 @@ fn table<T: Serialize>(value: &T) -> toml::Table {
 fn kept(spec: &ProblemSpec) -> BTreeMap<String, String> {
     let ProblemSpec { task, design, require, solve } = spec;
     let (mut kept, mut usual) = (BTreeMap::new(), RequireSpec::default());
-    if let Ok(task) = task.path.to_task() {
+    if let Ok(task) = task.to_task() {
         let given = bounds(design, &task);
         kept = differing("design", &given, &toml::Table::new());
         usual.longest_max = given.try_into().ok().and_then(|given| require.default_longest(&given, &task));
@@ -377,7 +377,7 @@ fn kept(spec: &ProblemSpec) -> BTreeMap<String, String> {
 }
 
 /// Returns the bounds that a problem gives, without those that the target gives by itself.
-fn bounds(design: &DesignSpec, task: &PathTask) -> toml::Table {
+fn bounds(design: &DesignSpec, task: &Task) -> toml::Table {
     let resolved = |mut design: DesignSpec| {
         design.resolve(task);
         design
@@ -461,9 +461,9 @@ mod tests {
         // Digitised points stay what they were as long as nobody moves one.
         let digitised = load(&root().join("problems/examples/digitised.toml"), &[]).expect("a problem");
         let mut ask = Ask::of(&digitised).expect("it fits");
-        assert!(ask.problem().expect("a problem").spec.task.path.raw.is_some());
+        assert!(ask.problem().expect("a problem").spec.task.raw.is_some());
         ask.points[0][0] += 1.0;
-        let moved = ask.problem().expect("a problem").spec.task.path;
+        let moved = ask.problem().expect("a problem").spec.task;
         assert!(moved.raw.is_none() && moved.points == ask.points);
     }
 

@@ -22,7 +22,7 @@ use crate::synthesis::answers::annotate;
 use crate::synthesis::nearest::nearest_positions;
 use crate::synthesis::{Budget, Context, SearchOutcome, errors_without};
 use crate::task::Problem;
-use crate::task::spec::{ProblemSpec, TaskSpec};
+use crate::task::spec::ProblemSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
@@ -352,7 +352,7 @@ impl House {
     pub(super) fn details(&self, ask: &DetailsAsk) -> Result<Details, DetailsError> {
         let found = self.find(&ask.of, true)?;
         let Found { record, index } = &found;
-        let ProblemSpec { task: TaskSpec { path }, require, .. } = &record.problem.resolved;
+        let ProblemSpec { task: path, require, .. } = &record.problem.resolved;
         Ok(Details {
             target: Target::from(&record.problem),
             tolerance: path.tolerance.clone(),

@@ -153,7 +153,7 @@ impl From<&Candidate> for Best {
 impl From<&Record> for JobResult {
     fn from(record: &Record) -> JobResult {
         JobResult {
-            points: record.problem.resolved.task.path.points.len(),
+            points: record.problem.resolved.task.points.len(),
             unit: record.problem.unit,
             seed: record.seed,
             method: record.method.asked.name().to_owned(),

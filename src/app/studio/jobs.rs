@@ -159,7 +159,7 @@ impl JobAsk {
         }
         let set: Vec<_> = self.set.iter().map(|(key, value)| (key.clone(), value.clone())).collect();
         let file = problem_file::parse("problem", &text, None, &set).map_err(AskError::Text)?;
-        if file.spec.task.path.points.len() > MOST_POINTS {
+        if file.spec.task.points.len() > MOST_POINTS {
             return Err(AskError::TooManyPoints);
         }
         Problem::new(file.spec.clone())?;
@@ -275,7 +275,7 @@ impl Jobs {
     /// Begins the work; `ask` is kept until it has ended.
     fn begin(self: &Arc<Self>, job: Job, options: Options, ask: Option<&JobAsk>) -> Result<(), Refusal> {
         let name = job.name.clone();
-        let points = job.spec.task.path.points.len();
+        let points = job.spec.task.points.len();
         let (cancel, told) = (AtomicBool::new(false), Mutex::default());
         let one = Arc::new(OneJob { cancel, begun: Instant::now(), points, told });
         {

@@ -6,7 +6,7 @@ use crate::record::{Candidate, ExactLinkage, ExactRecord, ProblemRecord, Relaxat
 use crate::report::exact;
 use crate::report::html::Drive;
 use crate::task::spec::{
-    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, PathSpec, RawPoints,
+    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TaskSpec,
     TimingSpec, TransmissionOver,
 };
 use schemars::JsonSchema;
@@ -314,7 +314,7 @@ pub struct Target {
 
 impl From<&ProblemRecord> for Target {
     fn from(ProblemRecord { name, unit, resolved, .. }: &ProblemRecord) -> Target {
-        let PathSpec { points, closed, .. } = &resolved.task.path;
+        let TaskSpec { points, closed, .. } = &resolved.task;
         Target { name: name.clone(), unit: *unit, points: points.clone(), closed: *closed }
     }
 }

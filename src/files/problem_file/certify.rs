@@ -3,7 +3,7 @@
 use super::raw::RawCertify;
 use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::toml_text::TomlText;
-use crate::task::spec::{CertifySpec, MAX_CERTIFY_S, PathSpec};
+use crate::task::spec::{CertifySpec, MAX_CERTIFY_S, TaskSpec};
 
 /// Returns how a certificate is worked out, if `asked` (`solve.certify`) is true, and a warning if something is asked
 /// for in vain.
@@ -11,7 +11,7 @@ pub(super) fn of(
     toml: &TomlText<'_>,
     asked: bool,
     table: Option<RawCertify>,
-    path: &PathSpec,
+    path: &TaskSpec,
 ) -> Checked<(Option<CertifySpec>, Option<Diagnostic>)> {
     let default = CertifySpec::default();
     let is_given = table.is_some();

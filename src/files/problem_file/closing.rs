@@ -11,7 +11,7 @@ use crate::task::spec::{OrderPolicy, ProblemSpec};
 /// prescribed crank angles do not let it.
 pub(super) fn against(toml: &TomlText<'_>, spec: &ProblemSpec) -> Option<Diagnostic> {
     let require = &spec.require;
-    let path = &spec.task.path;
+    let path = &spec.task;
     if path.closed
         && require.order == OrderPolicy::Required
         && require.closing.is_one_way()

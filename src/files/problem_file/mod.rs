@@ -7,6 +7,8 @@ mod certify;
 mod closing;
 mod design;
 mod expect;
+mod lists;
+mod motion;
 mod overrides;
 mod path;
 mod raw;
@@ -32,10 +34,10 @@ use crate::task::forms::precision::precision_points;
 use crate::task::forms::reduced;
 use crate::task::requirement::{RawRequire, RequirementKind};
 use crate::task::spec::{
-    MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, MOST_PICKS_WITHIN, Method, Objective, PathSpec,
-    ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec,
+    MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, MOST_PICKS_WITHIN, Method, Objective, ProblemSpec,
+    RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
-use raw::RawSolve;
+use raw::{RawSolve, RawTask};
 use std::path::Path;
 use target::Whereabouts;
 
@@ -106,7 +108,8 @@ pub fn parse(
     overrides: &[(String, String)],
 ) -> Result<ProblemFile, Box<Diagnostic>> {
     // A path that is typed may lead anywhere; a path in a file may not.
-    let anywhere = ["file", "svg"].iter().any(|key| is_set(overrides, &format!("task.path.{key}")));
+    let files = ["task.path.file", "task.path.svg", "task.motion.file"];
+    let anywhere = files.iter().any(|key| is_set(overrides, key));
     parse_at(file_name, text, &Whereabouts { folder, anywhere, beside: &[] }, overrides)
 }
 
@@ -162,10 +165,8 @@ fn parse_at(
         None => name::from_file(file_name, "problem"),
         given => checked_name(&toml, given, "problem")?,
     };
-    let tolerance_is_set = is_set(overrides, "task.path.tolerance");
-    let path = raw.task.take().and_then(|t| t.0.path).map(|p| p.0);
-    let path::PathRead { spec: path, task, unit, mut warnings } =
-        path::path_of(&toml, path, whereabouts, raw.unit, tolerance_is_set)?;
+    let path::TaskRead { spec: path, task, unit, mut warnings } =
+        task_of(&toml, raw.task.take(), whereabouts, raw.unit, overrides)?;
     let mut design = design::spec_of(&raw.design.0);
     design::check(&toml, &design)?;
     let longest_is_silent = raw.require.0.longest_max.is_none();
@@ -187,12 +188,36 @@ fn parse_at(
         expect::check(&toml, expect, path.points.len())?;
     }
     design.resolve(&task);
-    let spec = ProblemSpec { task: TaskSpec { path }, design, require, solve };
+    let spec = ProblemSpec { task: path, design, require, solve };
     continuation_of(&toml, &spec)?;
     warnings.extend(variables_of(&toml, &spec)?);
     warnings.extend(closing::against(&toml, &spec));
     let unit = raw.unit.or(unit);
     Ok(ProblemFile { name, source: raw.source, unit, spec, expect, warnings })
+}
+
+/// Reads the only task of the table `[task]`.
+fn task_of(
+    toml: &TomlText<'_>,
+    task: Option<OnlyTable<RawTask>>,
+    whereabouts: &Whereabouts<'_>,
+    unit: Option<Unit>,
+    overrides: &[(String, String)],
+) -> Checked<path::TaskRead> {
+    let (path, motion) = task.map_or((None, None), |OnlyTable(task)| (task.path, task.motion));
+    match (path, motion) {
+        (Some(_), Some(_)) => {
+            let message = "two tasks: [task.path] and [task.motion]";
+            toml.refuse_key("task.motion", message, "a problem has one task: keep one of the two")
+        }
+        (path, None) => {
+            let tolerance_is_set = is_set(overrides, "task.path.tolerance");
+            path::path_of(toml, path.map(|table| table.0), whereabouts, unit, tolerance_is_set)
+        }
+        (None, Some(OnlyTable(motion))) => {
+            motion::motion_of(toml, &motion, whereabouts, |key| is_set(overrides, key))
+        }
+    }
 }
 
 /// Reads a bare file of points, or a bare drawing, as a problem with every default; its name is the file's.
@@ -301,7 +326,7 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Checked<SolveSpec> {
 }
 
 /// Checks the points for the objective of the largest deviation: tolerances must be above zero; weights give a warning.
-fn deviation_of(toml: &TomlText<'_>, path: &PathSpec) -> Checked<Option<Diagnostic>> {
+fn deviation_of(toml: &TomlText<'_>, path: &TaskSpec) -> Checked<Option<Diagnostic>> {
     if let Some(j) = path.tolerance.iter().flatten().position(|t| *t == 0.0) {
         let message = format!("deviations are measured by the tolerances, and that of point {j} is 0");
         return toml.refuse("solve.objective", message, "give every point a tolerance above 0, or none");
@@ -321,7 +346,9 @@ fn continuation_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Checked<()> {
         return Ok(());
     };
     let key = match refusal {
-        precision::Refusal::Points { .. } | precision::Refusal::Timed => "solve.method".to_owned(),
+        precision::Refusal::Points { .. } | precision::Refusal::Timed | precision::Refusal::Motion => {
+            "solve.method".to_owned()
+        }
         precision::Refusal::Coincident { second, .. } => format!("task.path.points.{second}"),
     };
     toml.refuse(&key, refusal.to_string(), refusal.remedy())

@@ -1,19 +1,20 @@
 //! Reads `[task.path]`: the points from their source, with weights, tolerances and crank angles.
 
+use super::lists::Lists;
 use super::raw::RawPath;
 use super::target::{Source, Target, Whereabouts};
-use crate::files::diagnostic::{Checked, Diagnostic, counted};
+use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::toml_text::TomlText;
-use crate::files::toml_values::{OneOrEach, OnlyTable, numbers};
+use crate::files::toml_values::{OneOrEach, numbers};
 use crate::mechanism::Unit;
 use crate::task::resampling::MAX_SMOOTHED;
-use crate::task::spec::{PathSpec, RawPoints, TimingSpec};
-use crate::task::{AngleOffset, PathTask, TaskError, corners};
+use crate::task::spec::{RawPoints, TaskSpec};
+use crate::task::{Task, TaskError, corners};
 
-/// The values of `[task.path]`.
-pub(super) struct PathRead {
-    pub spec: PathSpec,
-    pub task: PathTask,
+/// The values of the task's table.
+pub(super) struct TaskRead {
+    pub spec: TaskSpec,
+    pub task: Task,
     /// The unit of a drawing's physical lengths.
     pub unit: Option<Unit>,
     pub warnings: Vec<Diagnostic>,
@@ -27,7 +28,7 @@ pub(super) fn path_of(
     whereabouts: &Whereabouts<'_>,
     unit: Option<Unit>,
     tolerance_is_set: bool,
-) -> Checked<PathRead> {
+) -> Checked<TaskRead> {
     let Some(path) = path else {
         let help = "add a table [task.path] with points = [[x, y], ...] or file = \"points.csv\"";
         return toml.refuse_key("task", "there is no task in this file", help);
@@ -38,6 +39,13 @@ pub(super) fn path_of(
         Source::File | Source::Svg(_) => (None, None, None),
     };
     let tolerance_column = tolerance_column.filter(|_| !tolerance_is_set);
+    if let Source::Csv(csv) = &mut target.source
+        && (csv.angle_deg.is_some() || csv.tolerance_deg.is_some())
+    {
+        let message = "a path has no body: the columns angle_deg and tolerance_deg are not used";
+        let help = "write [task.motion] in place of [task.path] to have the body's angles too";
+        csv.warnings.push(toml.at("task.path.file", message).with_help(help));
+    }
     let has_tolerances = tolerance_column.is_some() || matches!(path.tolerance, Some(OneOrEach::Each(_)));
     let beside = [
         ("crank angles", crank_column.is_some() || path.timing.is_some()),
@@ -45,58 +53,25 @@ pub(super) fn path_of(
         ("tolerances", has_tolerances),
     ];
     let raw = raw_of(toml, &path, &mut target, beside)?;
-    let n = target.points.len();
-    // A list is given in the problem file or as a column of the points file.
-    let list_of = |key: &str, what: &str, here: Option<Vec<f64>>, column: Option<Vec<f64>>| {
-        let place = format!("task.path.{key}");
-        match (here, column) {
-            (Some(_), Some(_)) => {
-                let (name, file) =
-                    (key.trim_start_matches("timing."), path.file.as_deref().unwrap_or_default());
-                let message = format!("{name} is given here and as a column of {file}");
-                toml.refuse(&place, message, "remove one of the two")
-            }
-            (Some(list), _) if list.len() != n => {
-                let message = format!("{} and {}", counted(n, "point"), counted(list.len(), what));
-                toml.refuse(&place, message, format!("give one {what} for each point"))
-            }
-            (here, column) => Ok(here.or(column)),
-        }
-    };
-    let here = path.tolerance.as_ref().map(|tolerance| match tolerance {
-        OneOrEach::One(tolerance) => vec![*tolerance; n],
-        OneOrEach::Each(list) => list.clone(),
-    });
-    let tolerance = list_of("tolerance", "tolerance", here, tolerance_column)?;
-    if let Some((j, t)) = tolerance.iter().flatten().enumerate().find(|(_, t)| **t < 0.0) {
-        let message = format!("tolerance = {t}: a distance cannot be negative");
-        return toml.refuse(&format!("task.path.tolerance.{j}"), message, "write 0 or more");
-    }
-    let weight = list_of("weight", "weight", path.weight.as_deref().map(numbers), weight_column)?;
-    if let Some((j, w)) = weight.iter().flatten().enumerate().find(|(_, w)| **w <= 0.0) {
-        let message = format!("weight = {w}: a weight is positive");
-        let help = "write a number above 0; leave the point out to ignore it";
-        return toml.refuse(&format!("task.path.weight.{j}"), message, help);
-    }
-    let (here, offset) = match &path.timing {
-        Some(OnlyTable(timing)) => (timing.crank_deg.as_deref().map(numbers), timing.offset),
-        None => (None, AngleOffset::default()),
-    };
-    let crank_deg = list_of("timing.crank_deg", "crank angle", here, crank_column)?;
-    if crank_deg.is_none() && path.timing.is_some() {
-        let help = "add crank_deg, one angle a point, or remove [task.path.timing] for free timing";
-        return toml.refuse_key("task.path.timing", "the crank angles are missing", help);
-    }
-    let timing = crank_deg.map(|crank_deg| TimingSpec { crank_deg, offset });
+    let lists = Lists { toml, target: &target, file: path.file.as_deref() };
+    let words = ["tolerance", "a distance"];
+    let tolerance = lists.tolerances("tolerance", words, path.tolerance.as_ref(), tolerance_column)?;
+    let weight = lists.weights(path.weight.as_deref().map(numbers), weight_column)?;
+    let timing = lists.timing(path.timing.as_ref(), crank_column)?;
     let points = std::mem::take(&mut target.points);
-    let spec = PathSpec { points, closed: target.closed, weight, tolerance, timing, raw };
+    let spec = TaskSpec { points, closed: target.closed, weight, tolerance, timing, raw, body: None };
+    task_read(toml, target, spec)
+}
+
+/// Checks a task, and returns it with what its source says beside the targets.
+pub(super) fn task_read(toml: &TomlText<'_>, target: Target, spec: TaskSpec) -> Checked<TaskRead> {
     let task = spec.to_task().map_err(|error| explain_task(toml, &target, &spec, &error))?;
     let (unit, warnings) = match target.source {
         Source::File => (None, Vec::new()),
         Source::Csv(csv) => (None, csv.warnings),
         Source::Svg(svg) => (svg.unit, svg.warnings),
     };
-    Ok(PathRead { spec, task, unit, warnings })
+    Ok(TaskRead { spec, task, unit, warnings })
 }
 
 /// Smooths and resamples the points if that is asked for; returns the points as they were then.
@@ -151,14 +126,14 @@ fn raw_of(
 }
 
 /// Returns the diagnostic of a task's error, at the point that it is about.
-fn explain_task(toml: &TomlText<'_>, target: &Target, spec: &PathSpec, error: &TaskError) -> Box<Diagnostic> {
+fn explain_task(toml: &TomlText<'_>, target: &Target, spec: &TaskSpec, error: &TaskError) -> Box<Diagnostic> {
     Box::new(match error {
         TaskError::TooFewPoints(n) => target
-            .at_all(toml, format!("a path needs at least 2 points, this one has {n}"))
-            .with_help("add points, in the order in which they are to be passed"),
+            .at_all(toml, format!("a {} needs at least 2 {}s, this one has {n}", target.kind, target.one))
+            .with_help(format!("add {}s, in the order in which they are to be passed", target.one)),
         TaskError::AdjacentEqual(i) => {
             let [x, y] = spec.points[*i];
-            let message = format!("points {} and {} are equal: ({x}, {y})", i + 1, i + 2);
+            let message = format!("{}s {} and {} are equal: ({x}, {y})", target.one, i + 1, i + 2);
             target.at_point(toml, i + 1, message).with_help(equal_neighbours_remedy(spec, *i))
         }
         TaskError::NoExtent => target
@@ -168,11 +143,17 @@ fn explain_task(toml: &TomlText<'_>, target: &Target, spec: &PathSpec, error: &T
             target.at_point(toml, *index, error.to_string())
         }
         TaskError::LengthMismatch { .. } => target.at_all(toml, error.to_string()),
+        TaskError::NoAngle => target.at_all(toml, "no pose has an angle".into()).with_help(
+            "give at least one pose an angle: [x, y, degrees]; for points alone write [task.path] with points = [..]",
+        ),
+        TaskError::AngleWeight(_) => toml
+            .at("task.motion.angle_weight", error.to_string())
+            .with_help("write the length that an angle error of one radian counts like; it has the size of the body"),
     })
 }
 
 /// Returns the remedy for equal points i and i + 1.
-fn equal_neighbours_remedy(spec: &PathSpec, i: usize) -> String {
+fn equal_neighbours_remedy(spec: &TaskSpec, i: usize) -> String {
     match &spec.timing {
         None => "remove one of them, or prescribe the timing with the same crank angle at both".to_owned(),
         Some(t) => format!(

@@ -2,7 +2,7 @@
 //! these types.
 
 use super::Expect;
-use crate::files::toml_values::{BoundedXY, Bounds, Count, Number, OneOrEach, OnlyTable, XY};
+use crate::files::toml_values::{BoundedXY, Bounds, Count, Number, OneOrEach, OnlyTable, PoseNumbers, XY};
 use crate::mechanism::Unit;
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
@@ -45,14 +45,39 @@ pub(crate) struct RawProblem {
     pub expect: Option<OnlyTable<Expect>>,
 }
 
-/// The task: a path.
+/// The task: a path or a motion.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Task")]
 pub(crate) struct RawTask {
     /// A path to trace.
-    #[schemars(required)]
     pub path: Option<OnlyTable<RawPath>>,
+    /// Poses that a body is to pass.
+    pub motion: Option<OnlyTable<RawMotion>>,
+}
+
+/// Poses that a body is to pass, or places of its point alone.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Motion")]
+pub(crate) struct RawMotion {
+    /// The poses in their order, each [x, y, angle of the body in degrees], or [x, y] where only the place counts. Give
+    /// one of poses and file.
+    pub poses: Option<Vec<PoseNumbers>>,
+    /// A CSV file, named from the problem file's folder: columns x, y, angle_deg (an empty cell: only the place counts) and
+    /// optionally weight, tolerance, tolerance_deg.
+    pub file: Option<String>,
+    /// Whether the motion returns to the first pose; where silent, false.
+    pub closed: Option<bool>,
+    /// A length: an angle error of one radian counts like an error of the place of this length; where silent, the size of
+    /// the target.
+    pub angle_weight: Option<Number>,
+    /// The largest error of the place accepted, 0 or more: a number for every pose, or a list of one a pose.
+    pub tolerance: Option<OneOrEach>,
+    /// The largest error of the angle accepted, degrees, likewise.
+    pub tolerance_deg: Option<OneOrEach>,
+    /// Weights of the squared errors, above 0, one a pose; where silent, all poses count alike.
+    pub weight: Option<Vec<Number>>,
 }
 
 /// A path to trace: points, a file of points, or a drawing.

@@ -1,6 +1,6 @@
-//! Reads the points of `[task.path]` from the file itself, or from a CSV or a drawing beside it.
+//! Reads the targets of a task from the file itself, or from a CSV or a drawing beside it.
 
-use super::raw::RawPath;
+use super::raw::{RawMotion, RawPath};
 use crate::files::diagnostic::{Checked, Diagnostic, quoted};
 use crate::files::points_file;
 use crate::files::points_file::{MAX_POINTS, PointsFile};
@@ -31,8 +31,13 @@ pub(super) enum Source {
     Svg(SvgTarget),
 }
 
-/// Points with their source.
+/// Targets with their source.
 pub(super) struct Target {
+    /// The table that they stand in: `task.path` or `task.motion`.
+    pub table: &'static str,
+    /// The kind of their task, and the word for one of them.
+    pub kind: &'static str,
+    pub one: &'static str,
     pub points: Vec<[f64; 2]>,
     pub source: Source,
     pub closed: bool,
@@ -82,7 +87,7 @@ impl Target {
         } else if let Some(file) = &path.file {
             let mut csv = match whereabouts.text_of(file) {
                 Some(text) => points_file::parse(file, text)?,
-                None => points_file::load(&whereabouts.find(toml, "file", file)?)?,
+                None => points_file::load(&whereabouts.find(toml, "task.path.file", file)?)?,
             };
             (std::mem::take(&mut csv.points), Source::Csv(csv))
         } else if let Some(file) = &path.svg {
@@ -94,7 +99,7 @@ impl Target {
             };
             let mut svg = match whereabouts.text_of(file) {
                 Some(text) => svg_file::parse(file, text, &options)?,
-                None => svg_file::load(&whereabouts.find(toml, "svg", file)?, &options)?,
+                None => svg_file::load(&whereabouts.find(toml, "task.path.svg", file)?, &options)?,
             };
             closed = svg.closed;
             (std::mem::take(&mut svg.points), Source::Svg(svg))
@@ -102,7 +107,59 @@ impl Target {
             let help = "add points = [[x, y], ...] or file = \"points.csv\" or svg = \"drawing.svg\"";
             return toml.refuse_key("task.path", "the path has no points", help);
         };
-        Ok(Target { points, source, closed, samples, resampled: false })
+        let (table, kind, one) = ("task.path", "path", "point");
+        Ok(Target { table, kind, one, points, source, closed, samples, resampled: false })
+    }
+
+    /// Reads the poses of a motion from its source; the second value holds their angles, `None` where only the place
+    /// counts.
+    pub fn of_motion(
+        toml: &TomlText<'_>,
+        motion: &RawMotion,
+        whereabouts: &Whereabouts<'_>,
+    ) -> Checked<(Target, Vec<Option<f64>>)> {
+        let (table, kind, one) = ("task.motion", "motion", "pose");
+        let (points, angles, source) = match (&motion.poses, &motion.file) {
+            (Some(_), Some(_)) => {
+                let message = "two sources of poses: poses and file";
+                return toml.refuse_key("task.motion.file", message, "keep one of the two");
+            }
+            (Some(poses), None) => {
+                if poses.len() > MAX_POINTS {
+                    let message = format!("{} poses; at most {MAX_POINTS} are read", poses.len());
+                    return toml.refuse_key(
+                        "task.motion.poses",
+                        message,
+                        "leave out poses: a few hundred suffice",
+                    );
+                }
+                let (points, angles) = poses.iter().map(|pose| (pose.place, pose.angle_deg)).unzip();
+                (points, angles, Source::File)
+            }
+            (None, Some(file)) => {
+                let mut csv = match whereabouts.text_of(file) {
+                    Some(text) => points_file::parse(file, text)?,
+                    None => points_file::load(&whereabouts.find(toml, "task.motion.file", file)?)?,
+                };
+                let Some(angles) = csv.angle_deg.take() else {
+                    let message = format!("{} has no column angle_deg", quoted(file));
+                    let help = "add a column angle_deg; an empty cell asks for the place alone";
+                    return toml.refuse("task.motion.file", message, help);
+                };
+                (std::mem::take(&mut csv.points), angles, Source::Csv(csv))
+            }
+            (None, None) => {
+                let help = "add poses = [[x, y, angle in degrees], ...] or file = \"poses.csv\"";
+                return toml.refuse_key("task.motion", "the motion has no poses", help);
+            }
+        };
+        let closed = motion.closed.unwrap_or(false);
+        Ok((Target { table, kind, one, points, source, closed, samples: None, resampled: false }, angles))
+    }
+
+    /// Returns the key of the list of targets.
+    fn list(&self) -> String {
+        format!("{}.{}s", self.table, self.one)
     }
 
     /// Returns a diagnostic about a point, at its place.
@@ -112,7 +169,7 @@ impl Target {
             Source::Csv(csv) => {
                 Diagnostic::new(csv.file.clone(), csv.text.clone(), message).at(csv.rows.get(index).cloned())
             }
-            Source::File => toml.at(&format!("task.path.points.{index}"), message),
+            Source::File => toml.at(&format!("{}.{index}", self.list()), message),
             Source::Svg(_) => self.at_all(toml, message),
         }
     }
@@ -122,7 +179,7 @@ impl Target {
         match &self.source {
             Source::Csv(csv) => Diagnostic::new(csv.file.clone(), csv.text.clone(), message),
             Source::Svg(svg) => Diagnostic::new(svg.file.clone(), "", message),
-            Source::File => toml.at("task.path.points", message),
+            Source::File => toml.at(&self.list(), message),
         }
     }
 }
@@ -133,15 +190,19 @@ impl Whereabouts<'_> {
         self.beside.iter().find(|(name, _)| *name == file).map(|(_, text)| *text)
     }
 
-    /// Returns the file that `task.path.key` names: inside the problem file's folder, links followed, or anywhere where it
+    /// Returns the file that a key names: inside the problem file's folder, links followed, or anywhere where it
     /// was named on the command line.
     pub fn find(&self, toml: &TomlText<'_>, key: &str, file: &str) -> Checked<PathBuf> {
-        let what = if key == "svg" { "drawing" } else { "points file" };
-        let refuse = |message: String, help: &str| toml.refuse(&format!("task.path.{key}"), message, help);
+        let what = if key.ends_with(".svg") { "drawing" } else { "points file" };
+        let refuse = |message: String, help: &str| toml.refuse(key, message, help);
         let Some(folder) = self.folder else {
             return refuse(
                 format!("a {what} cannot be read here: this text comes from no folder"),
-                "write the points as points = [[x, y], ...]",
+                if key.starts_with("task.motion") {
+                    "write the poses as poses = [[x, y, angle in degrees], ...]"
+                } else {
+                    "write the points as points = [[x, y], ...]"
+                },
             );
         };
         let place = folder.join(file);

@@ -87,7 +87,7 @@ impl Subject {
         }
         let spec = &record.problem.resolved;
         let best = record.candidates.first().ok_or(NoCertificate::NoCandidate)?.error.sum_sq;
-        let path = &spec.task.path;
+        let path = &spec.task;
         let timing = path.timing.as_ref().ok_or(NoCertificate::FreeTiming)?;
         let problem =
             crate::task::Problem::new(spec.clone()).map_err(|e| NoCertificate::Problem(e.to_string()))?;

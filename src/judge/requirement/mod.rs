@@ -13,8 +13,8 @@ mod longest_max;
 mod tolerance;
 mod transmission;
 
+use crate::judge::error::StructuralError;
 use crate::judge::referee::Verdict;
-use crate::mechanism::Complex;
 use crate::record::{Candidate, Figure, MET_TOLERANCE, Requirement};
 use crate::task::Problem;
 use crate::task::requirement::RequirementKind;
@@ -25,8 +25,8 @@ pub(super) struct Judged<'a> {
     pub problem: &'a Problem,
     pub candidate: &'a Candidate,
     pub verdict: &'a Verdict,
-    /// The structural errors, one per point.
-    pub structural: &'a [Complex],
+    /// The structural errors.
+    pub error: &'a StructuralError,
 }
 
 /// A requirement's value and limit, and whether it is met.
@@ -77,6 +77,7 @@ impl Judged<'_> {
             RequirementKind::Circuit => defects::circuit(self),
             RequirementKind::Closing => closing::judged(self),
             RequirementKind::Tolerance => tolerance::judged(self),
+            RequirementKind::ToleranceDeg => tolerance::of_angles(self),
         }?;
         Some(Requirement { name: kind.name().into(), value, limit, met })
     }

@@ -1,7 +1,7 @@
 //! Comparison of recorded values with recomputed ones.
 
 use super::{Mismatch, verdict};
-use crate::judge::assess::assess;
+use crate::judge::assess::assess_on_curve;
 use crate::mechanism::{AssemblyMode, FourBar};
 use crate::record::Candidate;
 use crate::task::Problem;
@@ -109,6 +109,7 @@ impl<'a> Comparison<'a> {
     pub fn judged(
         &mut self,
         (linkage, crank_deg, t1_at): (&FourBar, &[f64], &[AssemblyMode]),
+        frame_deg: Option<f64>,
         open: &str,
     ) -> Option<Candidate> {
         let n = self.problem.task().len();
@@ -117,7 +118,7 @@ impl<'a> Comparison<'a> {
             self.differ("the number of crank_deg and t1_at", has, format!("{n} points"));
             return None;
         }
-        let found = assess(self.problem, linkage, crank_deg, t1_at);
+        let found = assess_on_curve(self.problem, linkage, (crank_deg, t1_at), frame_deg, None);
         if found.is_none() {
             self.differ("the linkage", "closed at every point", open);
         }

@@ -73,7 +73,7 @@ impl Comparison<'_> {
 
     fn alternative(&mut self, candidate: &Candidate, recorded: &Alternative) {
         let at = (&recorded.linkage, recorded.crank_deg.as_slice(), recorded.t1_at.as_slice());
-        let Some(found) = self.judged(at, "open at one") else { return };
+        let Some(found) = self.judged(at, None, "open at one") else { return };
         let (size, n) = (self.problem.task().size(), self.problem.task().len());
         let sum = found.error.sum_sq;
         self.sum_sq("sum_sq", recorded.sum_sq, sum, n);

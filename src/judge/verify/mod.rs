@@ -14,12 +14,13 @@
 
 use crate::judge::assess::to_raw;
 use crate::judge::costs::{marginal, weighted_rms};
+use crate::judge::error::structural_error;
 use crate::judge::loosen::Demand;
 use crate::judge::rank::{compare, exact_objective};
 use crate::mechanism::FourBar;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::record::digest::{ProblemError, digest};
-use crate::record::{Candidate, Cost, CurveErrorRecord, FORMAT, Record};
+use crate::record::{AngleErrorRecord, Candidate, Cost, CurveErrorRecord, FORMAT, Record};
 use crate::task::Problem;
 use crate::task::spec::Objective;
 use crate::task::{AngleOffset, Timing};
@@ -118,7 +119,7 @@ impl Comparison<'_> {
     /// Checks that the target's points are the raw points after smoothing and resampling.
     fn digitised(&mut self) {
         const POINTS: &str = "problem.resolved.task.path.points";
-        let path = &self.problem.spec().task.path;
+        let path = &self.problem.spec().task;
         let Some(raw) = &path.raw else { return };
         let found = raw.target(path.closed);
         let count = |points: &[[f64; 2]]| format!("{} points", points.len());
@@ -183,7 +184,9 @@ impl Comparison<'_> {
     /// Checks every figure and verdict of a candidate; returns whether it could be judged.
     fn candidate(&mut self, recorded: &Candidate) -> bool {
         let at = (&recorded.linkage, recorded.crank_deg.as_slice(), recorded.t1_at.as_slice());
-        let Some(found) = self.judged(at, "open at one of them") else { return false };
+        let Some(found) = self.judged(at, recorded.frame_deg, "open at one of them") else { return false };
+        let word = |there: bool| if there { "there" } else { "absent" };
+        self.same("frame_deg", word(recorded.frame_deg.is_some()), word(found.frame_deg.is_some()));
         self.errors(recorded, &found);
         self.number(
             "grashof_margin",
@@ -226,10 +229,11 @@ impl Comparison<'_> {
         self.number("error.rms", r.rms, f.rms, size);
         self.number("error.max", r.max, f.max, size);
         self.number("error.rms_over_size", r.rms_over_size, f.rms_over_size, 1.0);
+        self.angles(r.angle.as_ref(), f.angle.as_ref(), recorded);
         self.under("error.to_curve.").curve(&r.to_curve, &f.to_curve, n);
         match (&r.to_raw, to_raw(problem, recorded)) {
             (Some(r), Some(f)) => {
-                let raw = problem.spec().task.path.raw.as_ref().map_or(0, |raw| raw.points.len());
+                let raw = problem.spec().task.raw.as_ref().map_or(0, |raw| raw.points.len());
                 self.under("error.to_raw.").curve(r, &f, raw);
             }
             (r, f) => {
@@ -239,14 +243,34 @@ impl Comparison<'_> {
         }
         if r.max_at != f.max_at {
             // The largest error may be at another point with an equal error.
-            let radians: Vec<f64> = recorded.crank_deg.iter().map(|d| d.to_radians()).collect();
-            let equal = problem
-                .task()
-                .errors(&recorded.linkage, &radians, &recorded.t1_at)
+            let equal = structural_error(problem, recorded)
                 .and_then(|e| e.structural.get(r.max_at).map(|s| s.norm()))
                 .is_some_and(|there| f.max - there <= RELATIVE * f.max + ABSOLUTE * size);
             if !equal {
                 self.differ("error.max_at", r.max_at, f.max_at);
+            }
+        }
+    }
+
+    /// Compares the errors of the body's angle, degrees.
+    fn angles(
+        &mut self,
+        recorded: Option<&AngleErrorRecord>,
+        found: Option<&AngleErrorRecord>,
+        candidate: &Candidate,
+    ) {
+        let (Some(r), Some(f)) = (recorded, found) else {
+            let word = |there: bool| if there { "there" } else { "absent" };
+            return self.same("error.angle", word(recorded.is_some()), word(found.is_some()));
+        };
+        self.number("error.angle.rms_deg", r.rms_deg, f.rms_deg, 360.0);
+        self.number("error.angle.max_deg", r.max_deg, f.max_deg, 360.0);
+        if r.max_at != f.max_at {
+            // The largest error may be at another pose with an equal error.
+            let there = structural_error(self.problem, candidate)
+                .and_then(|error| Some((*error.angle?.structural.get(r.max_at)?)?.abs().to_degrees()));
+            if !there.is_some_and(|there| f.max_deg - there <= RELATIVE * f.max_deg + ABSOLUTE * 360.0) {
+                self.differ("error.angle.max_at", r.max_at, f.max_at);
             }
         }
     }
@@ -328,7 +352,7 @@ impl Comparison<'_> {
     /// Checks that the crank angles are the prescribed ones, in whichever direction the timing lets them run.
     fn timing(&mut self, linkage: &FourBar, crank_deg: &[f64]) {
         let Timing::Prescribed { offset, .. } = self.problem.task().timing() else { return };
-        let Some(written) = &self.problem.spec().task.path.timing else { return };
+        let Some(written) = &self.problem.spec().task.timing else { return };
         let Some((first, written_first)) = crank_deg.first().zip(written.crank_deg.first()) else { return };
         let off = |direction: f64| {
             let pairs = crank_deg.iter().zip(&written.crank_deg);

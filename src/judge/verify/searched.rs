@@ -111,7 +111,7 @@ fn can_have_run(problem: &Problem, record: &Record, used: &[&str]) -> bool {
                 later.push(*last);
                 local = rest;
             }
-            let timed = problem.spec().task.path.timing.is_some();
+            let timed = problem.spec().task.timing.is_some();
             local == [LEAST_SQUARES] || timed && (local == [REDUCED] || local == [REDUCED, LEAST_SQUARES])
         }
     }

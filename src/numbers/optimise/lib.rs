@@ -41,3 +41,5 @@ pub mod saved;
 mod population_tests;
 #[cfg(test)]
 mod test_functions;
+#[cfg(test)]
+mod test_poses;

@@ -31,7 +31,7 @@ pub struct Subject {
 impl Subject {
     /// Returns the subject of a candidate of a record.
     pub fn of_candidate(record: &Record, candidate: &Candidate) -> Self {
-        let path = &record.problem.resolved.task.path;
+        let path = &record.problem.resolved.task;
         let mut positions = positions_at(&candidate.crank_deg, &candidate.t1_at);
         positions.retain(|(angle, _)| angle.is_finite());
         Subject {

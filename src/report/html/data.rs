@@ -73,7 +73,7 @@ pub(super) fn candidate_key(index: usize) -> String {
 impl<'a> Data<'a> {
     /// Returns the data of a record, of which `shown` is shown first.
     pub(super) fn new(record: &'a Record, shown: Shown) -> Self {
-        let path = &record.problem.resolved.task.path;
+        let path = &record.problem.resolved.task;
         let chosen = chosen(record);
         let of_candidate = |key, name, c: &'a Candidate| {
             Mechanism::new(key, name, (&c.linkage, &c.crank_deg, &c.t1_at), Some(c.error.max_at), &chosen)
@@ -141,7 +141,7 @@ impl<'a> Mechanism<'a> {
 
 /// Returns the numbers of the points that the page contains.
 fn chosen(record: &Record) -> Vec<usize> {
-    let points = &record.problem.resolved.task.path.points;
+    let points = &record.problem.resolved.task.points;
     let usable = |i: &usize| points[*i].iter().all(|x| x.abs() <= MAX_MAGNITUDE);
     let n = points.len();
     if n <= MOST_POINTS {
@@ -157,6 +157,6 @@ fn chosen(record: &Record) -> Vec<usize> {
 
 /// Returns the number of points on the page and of all points, if these differ.
 pub(super) fn thinned(record: &Record) -> Option<(usize, usize)> {
-    let all = record.problem.resolved.task.path.points.len();
+    let all = record.problem.resolved.task.points.len();
     (all > MOST_POINTS).then(|| (chosen(record).len(), all))
 }

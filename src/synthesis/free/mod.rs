@@ -41,6 +41,7 @@ use super::polish::{basins_wanted, promising};
 use super::starts::Starts;
 use super::states::{Counts, End, FreeState, Level, SearchState, StageState};
 use super::{Context, HitsSoFar, repeats};
+use crate::judge::error::structural_error;
 use crate::judge::rank::{exact_cost, searched};
 use crate::mechanism::dot;
 use crate::numbers::optimise::exact_float::Exact;
@@ -59,7 +60,6 @@ use stricter::{Kind, Stricter, stricter};
 mod batch;
 mod moves;
 mod parts;
-mod required;
 mod round;
 mod state;
 mod stricter;
@@ -73,10 +73,7 @@ fn is_noise(problem: &Problem, ends: &[End]) -> bool {
 /// Returns the correlation of the errors of neighbouring points: sum <r_j, r_j+1> / sum |r_j|^2, near 0 for noise, near
 /// 1 for a smooth misfit.
 fn likeness(problem: &Problem, candidate: &Candidate) -> f64 {
-    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-    let Some(error) = problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at) else {
-        return 1.0;
-    };
+    let Some(error) = structural_error(problem, candidate) else { return 1.0 };
     let whole: f64 = error.structural.iter().map(|r| r.norm_sqr()).sum();
     let alike: f64 = error.structural.windows(2).map(|w| dot(w[0], w[1])).sum();
     if whole > 0.0 { alike / whole } else { 1.0 }

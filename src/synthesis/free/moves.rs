@@ -5,13 +5,13 @@ use crate::numbers::arithmetic::streams::{Stream, normal, uniform};
 use crate::synthesis::constants::free::{DIFFERENCE, JITTER};
 use crate::task::Problem;
 use crate::task::forms::start::Start;
-use crate::task::forms::torus::TorusFit;
+use crate::task::forms::torus::PathFit;
 
 /// Returns a start near a known end: every free number of the design is moved by a random part of its size, and the
 /// positions are brought back to the curves.
 pub(super) fn near(problem: &Problem, end: &Start, stream: &mut Stream) -> Option<Start> {
     let scale = uniform(stream, JITTER.0.ln(), JITTER.1.ln()).exp();
-    let fit = TorusFit::new(problem, end.setting);
+    let fit = PathFit::new(problem, end.setting);
     let mut start = end.clone();
     let size = problem.task().size();
     for (i, (value, &(low, high))) in start.design.iter_mut().zip(fit.space().bounds()).enumerate() {
@@ -32,7 +32,7 @@ pub(super) fn along_a_difference(
     stream: &mut Stream,
 ) -> Option<Start> {
     let part = uniform(stream, DIFFERENCE.0, DIFFERENCE.1);
-    let fit = TorusFit::new(problem, end.setting);
+    let fit = PathFit::new(problem, end.setting);
     let mut start = end.clone();
     for (i, (value, &(low, high))) in start.design.iter_mut().zip(fit.space().bounds()).enumerate() {
         let step = if fit.space().is_length(i) && *value > 0.0 && one.design[i] > 0.0 && other.design[i] > 0.0

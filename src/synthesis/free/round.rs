@@ -3,7 +3,6 @@
 
 use super::moves::{along_a_difference, near};
 use super::parts::Reading;
-use super::required::{led_back, strayed, worth_spending};
 use crate::judge::rank::searched;
 use crate::numbers::arithmetic::streams::{stream, uniform};
 use crate::record::{Candidate, Evaluations};
@@ -13,10 +12,11 @@ use crate::synthesis::belief::SAME_OPTIMUM;
 use crate::synthesis::coarse::Coarse;
 use crate::synthesis::constants::free::{
     BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, DENSE_WORTH_FINISHING, JITTERED, MATCHED, MIDDLE,
-    MIDDLE_FIT, REASSIGNED, SCREEN, SHORT, SHORT_FIT, WORTH_FINISHING, WORTH_LEADING_BACK,
+    MIDDLE_FIT, REASSIGNED, SCREEN, SHORT, SHORT_FIT, WORTH_FINISHING,
 };
 use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
 use crate::synthesis::reassign::{Reassigned, reassigned};
+use crate::synthesis::required::worth_spending;
 use crate::synthesis::starts::Starts;
 use crate::synthesis::states::{End, StageState};
 use crate::task::Problem;
@@ -126,37 +126,6 @@ impl Spender<'_> {
             }
         }
         (merit, end)
-    }
-
-    /// As `fit`; if the points end on circuits or branches that the problem does not allow together, also fits from
-    /// there to the nearest ends that it allows.
-    fn fit_as_required(&mut self, problem: &Problem, start: Start, effort: Effort) -> Option<(f64, Start)> {
-        let most = worth_spending(problem, &start);
-        let (merit, end) = self.fit(problem, start, effort, most)?;
-        if !strayed(problem, &end) {
-            return Some((merit, end));
-        }
-        let mut back = led_back(problem, &end);
-        if back.len() > 1 {
-            // The more promising one first.
-            let mut tried: Vec<(f64, Start)> = Vec::with_capacity(back.len());
-            for start in back {
-                let most = worth_spending(problem, &start);
-                tried.extend(self.fit(problem, start, SHORT_FIT, most));
-            }
-            tried.retain(|(again, _)| *again <= WORTH_LEADING_BACK * merit);
-            by_merit(&mut tried, usize::MAX);
-            back = tried.into_iter().map(|(_, start)| start).collect();
-        }
-        for start in back {
-            let most = worth_spending(problem, &start);
-            let again = self.fit(problem, start, effort, most).filter(|(_, end)| !strayed(problem, end));
-            if again.is_some() {
-                return again;
-            }
-        }
-        // If that fails: the end that the referee will refuse.
-        Some((merit, end))
     }
 }
 

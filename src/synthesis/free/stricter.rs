@@ -1,9 +1,9 @@
 //! Stricter problems than the one to solve. Their answers are answers of the problem too, and starts without their
 //! requirements seldom lead to some of them.
 
-use super::required::ONE_BRANCH;
 use crate::synthesis::coarse::{Coarse, points_of};
 use crate::synthesis::constants::free::{STRICT_DEG, STRICT_LEAST};
+use crate::synthesis::required::ONE_BRANCH;
 use crate::task::Problem;
 use crate::task::spec::OnePolicy;
 

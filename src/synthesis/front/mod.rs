@@ -26,7 +26,7 @@ use super::constants::front::{
 use super::multistart::Effort;
 use super::tightened::{LIMITED, Tightened, Tighter, fitted, searched_anew};
 use super::{Context, Progress};
-use crate::judge::assess::assess;
+use crate::judge::assess::assess_again;
 use crate::judge::figures::figures;
 use crate::judge::rank::chosen;
 use crate::judge::trade_off::{knees, members, undominated};
@@ -385,6 +385,6 @@ fn fitted_for_deviation(
     let nothing = Tightened { candidate: None, evaluations: 0 };
     let Some(tight) = limits.of(problem) else { return nothing };
     let fit = fitted(context.of(problem), &tight, from, Effort { steps: 0, ..EFFORT }, (0.0, u64::MAX));
-    let judged = fit.candidate.and_then(|c| assess(context.problem, &c.linkage, &c.crank_deg, &c.t1_at));
+    let judged = fit.candidate.and_then(|c| assess_again(context.problem, &c));
     Tightened { candidate: judged, evaluations: fit.evaluations }
 }

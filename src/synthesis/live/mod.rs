@@ -116,7 +116,7 @@ impl Session {
 pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
     let mut spec = problem.spec().clone();
     spec.solve.evaluations = spec.solve.evaluations.min(FIRST_LOOK);
-    spec.task.path.tolerance = None;
+    spec.task.tolerance = None;
     let Ok(easier) = Problem::new(spec) else { return Vec::new() };
     let Ok(outcome) = plan::search(Context::new(&easier, budget)) else { return Vec::new() };
     let found = outcome.candidates.iter().filter_map(|c| judged_under(problem, c)).collect();
@@ -243,7 +243,7 @@ mod tests {
     fn a_first_look_finds_something_and_judges_it_by_the_whole_problem() {
         let cancel = AtomicBool::new(false);
         let mut spec = egg(24, 0, 0.0).spec().clone();
-        spec.task.path.tolerance = Some(vec![1e-9; 24]);
+        spec.task.tolerance = Some(vec![1e-9; 24]);
         let problem = Problem::new(spec).expect("a task");
         let found = first_look(&problem, &Budget::new(&cancel, None));
         assert!(!found.is_empty() && found.iter().all(|c| !c.accepted));

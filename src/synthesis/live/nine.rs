@@ -48,7 +48,7 @@ mod tests {
     fn points(moved: f64) -> Problem {
         let text = include_str!("../../../problems/exact/crank-rocker.toml");
         let mut spec = parse("nine", text, None, &[]).expect("a problem").spec;
-        spec.task.path.points[4][0] += moved;
+        spec.task.points[4][0] += moved;
         Problem::new(spec).expect("a task")
     }
 
@@ -82,7 +82,7 @@ mod tests {
         }
         // Ten points are not accepted.
         let mut spec = points(0.0).spec().clone();
-        spec.task.path.points.push([9.0, 9.0]);
+        spec.task.points.push([9.0, 9.0]);
         assert!(nine.follow(&Problem::new(spec).expect("a task"), &cancel).is_none());
     }
 }

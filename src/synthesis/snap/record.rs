@@ -11,7 +11,7 @@ use crate::record::digest::NotWritten;
 use crate::record::{Candidate, ProblemRecord, Record};
 use crate::synthesis::answers::annotate;
 use crate::task::Problem;
-use crate::task::spec::{DesignSpec, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec};
+use crate::task::spec::{DesignSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec};
 
 /// Number of points on a linkage's own curve.
 const OWN_POINTS: usize = 36;
@@ -56,10 +56,8 @@ pub fn own_curve(linkage: &FourBar) -> Option<(Problem, Candidate)> {
         link_ratio_max: RequireSpec::default().link_ratio_max.max(2.0 * linkage.link_ratio()),
         ..RequireSpec::default()
     };
-    let path =
-        PathSpec { points, closed: sweep.full_turn, weight: None, tolerance: None, timing: None, raw: None };
     let spec = ProblemSpec {
-        task: TaskSpec { path },
+        task: TaskSpec::path(points, sweep.full_turn),
         design: DesignSpec::default(),
         require,
         solve: SolveSpec::default(),

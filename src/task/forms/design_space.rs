@@ -3,13 +3,14 @@
 //! x = (Ax, Ay, G1, G2, a, b, c, Q1, Q2, o). The ground (G1, G2) is B itself or, if the problem gives `ground` or
 //! `ground_angle_deg` and not B, the length and direction from A to B. The coupler point (Q1, Q2) is (coupler_x,
 //! coupler_y) or, if the problem gives d or e only, those distances with the side t2 kept separately. o is the crank
-//! angle's offset if the timing leaves it free. Any other quantity that the problem bounds becomes an inequality (a
+//! angle's offset if the timing leaves it free; in a motion with free timing it is the frame, the angle from the coupler's
+//! direction to the body's x axis. Any other quantity that the problem bounds becomes an inequality (a
 //! derived bound).
 
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::four_bar::position::Kernel;
 use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, length, point, xy};
-use crate::task::PathTask;
+use crate::task::Task;
 use crate::task::spec::{DEFAULT_REACH, DesignSpec, Limits};
 use std::f64::consts::PI;
 
@@ -166,11 +167,11 @@ pub struct DesignSpace {
 const OFFSET: usize = DESIGN - 1;
 
 impl DesignSpace {
-    /// Creates the space of a resolved design table; `offset_free`: whether the crank angle's offset is unknown;
-    /// `pivot_box` tightens the pivots' bounds; `side` is t2, used if d and e are the coordinates.
+    /// Creates the space of a resolved design table; `offset_free`: whether the crank angle's offset is unknown, or the
+    /// frame of a body; `pivot_box` tightens the pivots' bounds; `side` is t2, used if d and e are the coordinates.
     pub fn new(
         spec: &DesignSpec,
-        task: &PathTask,
+        task: &Task,
         offset_free: bool,
         pivot_box: Option<[f64; 4]>,
         side: CouplerSide,
@@ -244,9 +245,11 @@ impl DesignSpace {
         &self.bounds
     }
 
-    /// Fixes every number at its value in `x`.
+    /// Fixes the linkage at its value in `x`; the frame of a body stays free.
     pub fn fix(&mut self, x: &Design) {
-        self.bounds = x.map(|value| (value, value));
+        for (bounds, value) in self.bounds.iter_mut().zip(x).take(SHAPE) {
+            *bounds = (*value, *value);
+        }
         self.free.clear();
         self.derived.clear();
     }
@@ -318,7 +321,7 @@ impl DesignSpace {
         i == OFFSET || (i == 3 && self.ground == GroundChart::Polar)
     }
 
-    /// Returns the crank angle's offset.
+    /// Returns the crank angle's offset, or the frame of a body in a motion.
     pub fn offset(&self, x: &Design) -> f64 {
         x[OFFSET]
     }
@@ -369,7 +372,7 @@ impl DesignSpace {
     }
 
     /// Returns the design vector of a shape, inside the bounds or not.
-    fn coordinates(&self, shape: &Shape, offset: f64) -> Design {
+    pub fn coordinates(&self, shape: &Shape, offset: f64) -> Design {
         let ground = shape.follower_pivot - shape.crank_pivot;
         let (g_1, g_2) = match self.ground {
             GroundChart::Pivot => (shape.follower_pivot.re, shape.follower_pivot.im),

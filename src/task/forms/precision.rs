@@ -22,6 +22,9 @@ pub enum Refusal {
         /// Number of points.
         points: usize,
     },
+    /// The targets are poses.
+    #[error("method = \"continuation\" finds linkages through exactly 9 points, and this task has poses")]
+    Motion,
     /// The crank angles are given.
     #[error(
         "crank angles cannot be prescribed with method = \"continuation\": nine points take all the freedom"
@@ -49,6 +52,7 @@ impl Refusal {
             Refusal::Points { .. } => {
                 "give 9 points, or write method = \"auto\": more points can only be approached"
             }
+            Refusal::Motion => "write method = \"auto\"; five poses are met exactly without it",
             Refusal::Timed => "remove the crank angles, or write method = \"auto\" and keep them",
             Refusal::Coincident { .. } => "move one of the two, or write method = \"auto\"",
         }
@@ -61,6 +65,9 @@ impl Refusal {
 /// [`Refusal`]: the reason why it has none.
 pub fn precision_points(problem: &Problem) -> Result<[Complex; PRECISION_POINTS], Refusal> {
     let task = problem.task();
+    if task.body().is_some() {
+        return Err(Refusal::Motion);
+    }
     if !matches!(task.timing(), Timing::Free) {
         return Err(Refusal::Timed);
     }

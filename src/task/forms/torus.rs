@@ -11,18 +11,27 @@
 //! h   = c dc - <Y, dA - dB + e da + u db>
 //! ```
 //!
+//! In a motion a target has a third row: the error of the body's angle times the length W that a radian counts like,
+//!
+//! ```text
+//! W (theta_j - arg u_j - beta),     d(arg u) = -c_phi/sqrt(n2) along the curve,  c_w/n2 h_k by the shape
+//! ```
+//!
+//! with the frame beta, the angle from the coupler's direction to the body's x axis, as the last unknown of the design.
+//! It is zero for a target without an angle.
+//!
 //! The tangents are eliminated point by point in [`crate::numbers::optimise::levenberg_marquardt`].
 
 use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape};
 use super::rows::{Motion, Place, Requirements, Row, assembly_of};
 use crate::mechanism::effort::computed;
-use crate::mechanism::four_bar::mobility::{linkage_type, ways_round};
+use crate::mechanism::four_bar::mobility::{linkage_type, ways_round, wrapped};
 use crate::mechanism::{AssemblyMode, Complex, LinkageType, dot, turned, xy};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
 };
-use crate::task::{Problem, Setting};
+use crate::task::{Body, Problem, Setting};
 
 use crate::task::defect::ORDER_TOLERANCE;
 use std::f64::consts::TAU;
@@ -30,14 +39,16 @@ use std::f64::consts::TAU;
 /// The positions of all points: (e_j, u_j).
 pub type Positions = Vec<[Complex; 2]>;
 
+/// The row of the body's angle among those of a target.
+const ANGLE_ROW: usize = 2;
 /// Most Newton steps that bring a position back to its curve; each squares the miss.
 const RETURN_STEPS: usize = 12;
 /// Tolerance for a position on its curve: its miss over the largest link squared.
 const ON_CURVE: f64 = 1e-14;
 
-/// Least squares over the design vector and the points' positions.
+/// Least squares over the design vector and the points' positions, with R rows a target: 2 of a path, 3 of a motion.
 #[derive(Clone, Debug)]
-pub struct TorusFit<'a> {
+pub struct TorusFit<'a, const R: usize> {
     problem: &'a Problem,
     setting: Setting,
     space: DesignSpace,
@@ -46,7 +57,12 @@ pub struct TorusFit<'a> {
     sense: f64,
 }
 
-impl<'a> TorusFit<'a> {
+/// The fit of a path: two rows a target.
+pub type PathFit<'a> = TorusFit<'a, 2>;
+/// The fit of a motion: three rows a target.
+pub type MotionFit<'a> = TorusFit<'a, 3>;
+
+impl<'a, const R: usize> TorusFit<'a, R> {
     /// Creates the fit of a problem in a setting, without an order of the points; see [`TorusFit::in_order`].
     pub fn new(problem: &'a Problem, setting: Setting) -> Self {
         let space = problem.space(setting.side);
@@ -360,7 +376,7 @@ impl Blocks {
     }
 }
 
-impl TorusFit<'_> {
+impl<const R: usize> TorusFit<'_, R> {
     /// Returns the derivatives of a position's crank angle: by the shape, with the least-norm return to its curve, and
     /// by its own step. Zero if the curve has no tangent.
     fn crank_of(&self, shape: &Shape, position: [Complex; 2]) -> ([f64; SHAPE], f64) {
@@ -409,7 +425,12 @@ impl TorusFit<'_> {
     }
 }
 
-impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
+/// Returns W (theta - arg u - beta) of a target, the angle within half a turn; zero if it has no angle.
+fn angle_residual(body: &Body, j: usize, coupler: Complex, frame: f64) -> f64 {
+    body.angles[j].map_or(0.0, |angle| body.angle_weight * wrapped(angle - coupler.arg() - frame))
+}
+
+impl<const R: usize> BlockLeastSquares<DESIGN, R> for TorusFit<'_, R> {
     type State = Positions;
 
     fn points(&self) -> usize {
@@ -429,14 +450,25 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
             let p = shape.crank_pivot + e * shape.crank + u * shape.offset;
             cost += weight * (target - p).norm_sqr();
         }
+        if R == ANGLE_ROW + 1
+            && let Some(body) = task.body()
+        {
+            let frame = self.space.offset(x);
+            for (j, ([_, u], weight)) in state.iter().zip(task.weights()).enumerate() {
+                cost += weight * angle_residual(body, j, *u, frame).powi(2);
+            }
+        }
         cost.is_finite().then_some(cost)
     }
 
-    fn linearise(&self, x: &Design, state: &Positions, each: &mut dyn FnMut(&PointBlock<DESIGN>)) -> bool {
+    fn linearise(&self, x: &Design, state: &Positions, each: &mut dyn FnMut(&PointBlock<DESIGN, R>)) -> bool {
         let Some(shape) = self.space.shape(x) else { return false };
         let (task, rule) = (self.problem.task(), self.space.chain_rule(x, &shape));
         computed(task.len());
-        for ((position, target), weight) in state.iter().zip(task.points()).zip(task.weights()) {
+        let body = task.body().filter(|_| R == ANGLE_ROW + 1);
+        for (j, ((position, target), weight)) in
+            state.iter().zip(task.points()).zip(task.weights()).enumerate()
+        {
             let [e, u] = *position;
             let (y, by_e, by_u) = frame(&shape, *position);
             let n2 = by_e * by_e + by_u * by_u;
@@ -459,23 +491,45 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
                 u,
                 turned(u),
             ];
-            let jacobian =
-                [columns.map(|z| -z.re), columns.map(|z| -z.im)].map(|row| rule.by_design(&row, 0.0));
             let p = shape.crank_pivot + e * shape.crank + u * shape.offset;
-            let tangent = tangent * -self.forward();
-            each(&PointBlock { residual: xy(target - p), jacobian, tangent: xy(tangent), weight: *weight });
+            let mut block = PointBlock {
+                residual: [0.0; R],
+                jacobian: [[0.0; DESIGN]; R],
+                tangent: [0.0; R],
+                weight: *weight,
+            };
+            block.residual[..2].copy_from_slice(&xy(target - p));
+            block.tangent[..2].copy_from_slice(&xy(tangent * -self.forward()));
+            let rows = [columns.map(|z| -z.re), columns.map(|z| -z.im)];
+            for (out, row) in block.jacobian.iter_mut().zip(rows) {
+                *out = rule.by_design(&row, 0.0);
+            }
+            if let Some(body) = body.filter(|body| body.angles[j].is_some()) {
+                let weight = body.angle_weight;
+                let miss = [-y.re, -y.im, y.re, y.im, -dot(y, e), -dot(y, u), shape.follower, 0.0, 0.0];
+                block.residual[ANGLE_ROW] = angle_residual(body, j, u, self.space.offset(x));
+                block.jacobian[ANGLE_ROW] = rule.by_design(&miss.map(|h| -weight * h * by_u / n2), -weight);
+                block.tangent[ANGLE_ROW] = self.forward() * weight * by_e / n2.sqrt();
+            }
+            each(&block);
         }
         true
     }
 
-    fn residuals(&self, x: &Design, state: &Positions, out: &mut Vec<[f64; 2]>) -> bool {
+    fn residuals(&self, x: &Design, state: &Positions, out: &mut Vec<[f64; R]>) -> bool {
         let Some(shape) = self.space.shape(x) else { return false };
+        let task = self.problem.task();
+        let body = task.body().filter(|_| R == ANGLE_ROW + 1);
         out.clear();
-        out.extend(
-            state.iter().zip(self.problem.task().points()).map(|([e, u], target)| {
-                xy(target - (shape.crank_pivot + e * shape.crank + u * shape.offset))
-            }),
-        );
+        out.extend(state.iter().zip(task.points()).enumerate().map(|(j, ([e, u], target))| {
+            let mut residual = [0.0; R];
+            let p = shape.crank_pivot + e * shape.crank + u * shape.offset;
+            residual[..2].copy_from_slice(&xy(target - p));
+            if let Some(body) = body {
+                residual[ANGLE_ROW] = angle_residual(body, j, *u, self.space.offset(x));
+            }
+            residual
+        }));
         true
     }
 
@@ -503,7 +557,7 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
         settled
     }
 
-    fn wide<R>(&self, work: impl FnOnce() -> R) -> R {
+    fn wide<T>(&self, work: impl FnOnce() -> T) -> T {
         vectorised(work)
     }
 

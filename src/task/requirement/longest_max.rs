@@ -3,7 +3,7 @@
 use super::{Definition, Limit, Refusal, RequireSpec};
 use crate::mechanism::{Complex, MAX_MAGNITUDE};
 use crate::task::spec::{DesignSpec, Limits, ProblemSpec};
-use crate::task::{PathTask, Timing};
+use crate::task::{Task, Timing};
 
 /// The default of `longest_max` where it has one, in sizes of the target.
 pub const DEFAULT_LONGEST: f64 = 3.0;
@@ -29,12 +29,13 @@ pub(super) const LONGEST_MAX: Definition = Definition {
 };
 
 impl RequireSpec {
-    /// Returns `longest_max` of a problem that is silent about it: 3 sizes of a target with free timing. There is none
+    /// Returns `longest_max` of a problem that is silent about it: 3 sizes of a path with free timing. There is none
     /// if `design`, the bounds as they are given, bounds a length, and none beside `extent_max`; nor is there one that
     /// the places given for the pivots would make impossible.
-    pub(crate) fn default_longest(&self, design: &DesignSpec, task: &PathTask) -> Option<f64> {
+    pub(crate) fn default_longest(&self, design: &DesignSpec, task: &Task) -> Option<f64> {
         let longest = longest_of(task.size());
         let applies = matches!(task.timing(), Timing::Free)
+            && task.body().is_none()
             && self.extent_max.is_none()
             && !design.bounds_a_length()
             && are_in_reach(design, self.pivots_in, task, longest);
@@ -45,9 +46,12 @@ impl RequireSpec {
 impl ProblemSpec {
     /// Returns whether `longest_max` has the value of its default, whoever set it.
     pub(crate) fn has_default_longest(&self) -> bool {
-        let path = &self.task.path;
+        let path = &self.task;
         let default = || path.to_task().ok().map(|task| longest_of(task.size()));
-        self.require.longest_max.is_some() && path.timing.is_none() && self.require.longest_max == default()
+        self.require.longest_max.is_some()
+            && path.timing.is_none()
+            && path.body.is_none()
+            && self.require.longest_max == default()
     }
 }
 
@@ -57,7 +61,7 @@ fn longest_of(size: f64) -> f64 {
 }
 
 /// Returns whether links of this length can span the pivots, and two of them lead from each pivot to every point.
-fn are_in_reach(design: &DesignSpec, pivots_in: Option<[f64; 4]>, task: &PathTask, longest: f64) -> bool {
+fn are_in_reach(design: &DesignSpec, pivots_in: Option<[f64; 4]>, task: &Task, longest: f64) -> bool {
     let (a, b) = (design.crank_pivot, design.follower_pivot);
     let spanned = a.zip(b).is_none_or(|(a, b)| distance(a, b) <= longest);
     let plate = pivots_in.map(|[x0, y0, x1, y1]| [Limits(x0, x1), Limits(y0, y1)]);

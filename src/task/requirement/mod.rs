@@ -18,6 +18,7 @@ mod longest_max;
 mod order;
 mod pivots_in;
 mod tolerance;
+mod tolerance_deg;
 mod transmission;
 
 pub use limit::{Limit, LimitUnit};
@@ -32,8 +33,8 @@ use crate::task::{Defect, Problem};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The requirements: the keys of `[require]`, and the tolerance of the path, in the order of a record. (The bounds of the
-/// design come before the tolerance there.)
+/// The requirements: the keys of `[require]`, and the tolerances of the task, in the order of a record. (The bounds of the
+/// design come before the tolerances there.)
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RequirementKind {
     /// The key `require.type`.
@@ -60,13 +61,15 @@ pub enum RequirementKind {
     Circuit,
     /// The key `require.closing`.
     Closing,
-    /// The key `task.path.tolerance`.
+    /// The key `tolerance` of the task.
     Tolerance,
+    /// The key `task.motion.tolerance_deg`.
+    ToleranceDeg,
 }
 
 impl RequirementKind {
     /// Every kind, in the order in which conflicts name them and relaxations try them.
-    pub const IN_CONFLICTS: [RequirementKind; 13] = [
+    pub const IN_CONFLICTS: [RequirementKind; 14] = [
         Self::Transmission,
         Self::PivotsIn,
         Self::FootprintIn,
@@ -74,6 +77,7 @@ impl RequirementKind {
         Self::LongestMax,
         Self::LinkRatio,
         Self::Tolerance,
+        Self::ToleranceDeg,
         Self::Type,
         Self::Order,
         Self::Direction,
@@ -82,8 +86,29 @@ impl RequirementKind {
         Self::Closing,
     ];
 
+    /// The tolerances of the task: of the place and of a body's angle.
+    pub const TOLERANCES: [RequirementKind; 2] = [Self::Tolerance, Self::ToleranceDeg];
+
+    /// Returns whether it is a tolerance of the task.
+    pub fn is_tolerance(self) -> bool {
+        Self::TOLERANCES.contains(&self)
+    }
+
+    /// Returns whether a requirement of this name in a record is a tolerance of the task.
+    pub fn names_tolerance(name: &str) -> bool {
+        Self::TOLERANCES.iter().any(|kind| kind.name() == name)
+    }
+
+    /// Returns its key in the file of a problem: the tolerance of the place is one of its task's table.
+    pub fn key_in(self, spec: &ProblemSpec) -> String {
+        match self {
+            Self::Tolerance => format!("{}.tolerance", spec.task.table()),
+            other => other.definition().key.to_owned(),
+        }
+    }
+
     /// Returns every kind, in the order of a record.
-    pub fn all() -> [RequirementKind; 13] {
+    pub fn all() -> [RequirementKind; 14] {
         let mut kinds = Self::IN_CONFLICTS;
         kinds.sort_unstable();
         kinds
@@ -105,6 +130,7 @@ impl RequirementKind {
             Self::Circuit => &circuit::CIRCUIT,
             Self::Closing => &closing::CLOSING,
             Self::Tolerance => &tolerance::TOLERANCE,
+            Self::ToleranceDeg => &tolerance_deg::TOLERANCE_DEG,
         }
     }
 

@@ -9,7 +9,7 @@ pub(super) const ORDER: Definition = Definition {
     short: "order",
     label: "order of the points",
     plain: "passes the points in their order",
-    is_asked: |problem: &Problem| problem.order_required() && problem.spec().task.path.timing.is_none(),
+    is_asked: |problem: &Problem| problem.order_required() && problem.spec().task.timing.is_none(),
     set_limits: |spec, _| spec.require.order = OrderPolicy::Any,
     choice: |require| Some(Choice::Word(if require.order == OrderPolicy::Any { "any" } else { "required" })),
     ..Definition::DEFAULT

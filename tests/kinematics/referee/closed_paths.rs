@@ -2,14 +2,14 @@
 
 use super::{free, names, of_every_type, task, triple_rocker, verdict};
 use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, InputRange, NaturalCoordinates};
-use linkwright::internals::task::{AngleOffset, Defect, PathOptions, PathTask, Return, Timing};
+use linkwright::internals::task::{AngleOffset, Defect, Return, Task, TaskOptions, Timing};
 use std::f64::consts::TAU;
 
 /// Closed, with a rule for the way back.
-fn closed(n: usize, timing: Timing, comes_back: Return) -> PathTask {
+fn closed(n: usize, timing: Timing, comes_back: Return) -> Task {
     let points = task(n, Timing::Free, false).points().iter().map(|p| [p.re, p.im]).collect();
-    let options = PathOptions { closed: true, ..PathOptions::default() };
-    PathTask::new(points, timing, options).expect("a task").coming_back(comes_back)
+    let options = TaskOptions { closed: true, ..TaskOptions::default() };
+    Task::new(points, timing, options).expect("a task").coming_back(comes_back)
 }
 
 #[test]

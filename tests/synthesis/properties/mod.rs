@@ -46,7 +46,7 @@ fn whatever_is_called_accepted_is_acceptable() {
                 .extend(found.into_iter().map(|c| format!("accepted candidate {}: {c}", candidate.rank)));
         }
         if !complaints.is_empty() {
-            let beside = [("weight", &spec.task.path.weight), ("tolerance", &spec.task.path.tolerance)];
+            let beside = [("weight", &spec.task.weight), ("tolerance", &spec.task.tolerance)];
             complaints.truncate(5);
             wrong.push(format!("case {index}: {}\n{text}{beside:?}", complaints.join("\n")));
         }
@@ -94,7 +94,7 @@ fn the_plain_checks_see_what_is_wrong() {
         }),
         ("two points in each other's place", |spec, c| {
             c.crank_deg.swap(1, 2);
-            spec.task.path.timing.is_none()
+            spec.task.timing.is_none()
                 && spec.require.order == OrderPolicy::Required
                 && spec.require.circuit == OnePolicy::One
                 && c.crank_deg.len() > 6
@@ -102,7 +102,7 @@ fn the_plain_checks_see_what_is_wrong() {
         }),
         ("a crank angle that was not asked for", |spec, c| {
             c.crank_deg[1] += 0.001;
-            spec.task.path.timing.is_some()
+            spec.task.timing.is_some()
         }),
         ("a tight ratio", |spec, c| {
             spec.require.link_ratio_max = 0.99 * c.link_ratio;
@@ -149,7 +149,7 @@ fn the_plain_checks_see_what_is_wrong() {
             true
         }),
         ("a tolerance exceeded", |spec, c| {
-            spec.task.path.tolerance = Some(vec![0.99 * c.error.max - 1e-6; c.crank_deg.len()]);
+            spec.task.tolerance = Some(vec![0.99 * c.error.max - 1e-6; c.crank_deg.len()]);
             c.error.max > 1e-4
         }),
         ("the wrong direction", |spec, c| {
@@ -157,12 +157,12 @@ fn the_plain_checks_see_what_is_wrong() {
             let rises = last >= first;
             spec.require.direction = if rises { DirectionPolicy::Cw } else { DirectionPolicy::Ccw };
             let plain = c.linkage_type.input_turns_fully() && (last - first).abs() > 1.0;
-            let whole = spec.task.path.points.first() == spec.task.path.points.last();
+            let whole = spec.task.points.first() == spec.task.points.last();
             let one = spec.require.branch == OnePolicy::One && spec.require.circuit == OnePolicy::One;
             plain
                 && one
                 && !whole
-                && spec.task.path.timing.is_none()
+                && spec.task.timing.is_none()
                 && spec.require.order == OrderPolicy::Required
                 && c.grashof_margin.abs() > 0.01 * c.linkage.longest_link()
         }),

@@ -93,7 +93,7 @@ impl Look<'_> {
 
     /// The joints at every point, checked by their distances.
     fn positions(&mut self) -> Option<Vec<Joints>> {
-        let n = self.spec.task.path.points.len();
+        let n = self.spec.task.points.len();
         let (angles, signs) = (&self.candidate.crank_deg, &self.candidate.t1_at);
         if angles.len() != n || signs.len() != n {
             self.say(format!("{} angles and {} signs for {n} points", angles.len(), signs.len()));
@@ -131,7 +131,7 @@ impl Look<'_> {
     }
 
     fn errors(&mut self, joints: &[Joints]) {
-        let path = &self.spec.task.path;
+        let path = &self.spec.task;
         let errors: Vec<f64> = path
             .points
             .iter()
@@ -238,7 +238,7 @@ impl Look<'_> {
 
     /// Prescribed crank angles are the prescribed ones.
     fn timing(&mut self) {
-        let Some(timing) = &self.spec.task.path.timing else { return };
+        let Some(timing) = &self.spec.task.timing else { return };
         let (has, wants) = (&self.candidate.crank_deg, &timing.crank_deg);
         let off = |way: f64| {
             let steps = has.iter().zip(wants).map(|(h, w)| ((h - has[0]) - way * (w - wants[0])).abs());
@@ -267,7 +267,7 @@ impl Look<'_> {
 
     /// How many points say something of the order: a last point that repeats the first says nothing.
     fn ordered(&self) -> usize {
-        let points = &self.spec.task.path.points;
+        let points = &self.spec.task.points;
         let repeats = points.len() > 2 && points[0] == points[points.len() - 1];
         if repeats { points.len() - 1 } else { points.len() }
     }
@@ -294,7 +294,7 @@ impl Look<'_> {
             self.say(format!("point {j} is not on the circuit of point 0"));
             return;
         }
-        if self.spec.task.path.timing.is_some() || require.order == OrderPolicy::Any {
+        if self.spec.task.timing.is_some() || require.order == OrderPolicy::Any {
             return;
         }
         let along: Vec<f64> = places.into_iter().flatten().take(self.ordered()).collect();
@@ -371,7 +371,7 @@ impl Look<'_> {
         if !one || self.near_change_point() || (require.order == OrderPolicy::Any && turns) {
             return;
         }
-        let timed = self.spec.task.path.timing.is_some();
+        let timed = self.spec.task.timing.is_some();
         let (low, high) = span(&deg);
         if !timed && require.order == OrderPolicy::Required {
             let rises = deg[deg.len() - 1] >= deg[0];
@@ -389,8 +389,8 @@ impl Look<'_> {
                 self.say(format!("the crank turns the wrong way: {deg:?}"));
             }
         }
-        let closed = self.spec.task.path.closed || self.ordered() < joints.len();
-        let returns = self.spec.task.path.closed || (!timed && self.ordered() < joints.len());
+        let closed = self.spec.task.closed || self.ordered() < joints.len();
+        let returns = self.spec.task.closed || (!timed && self.ordered() < joints.len());
         if returns
             && !turns
             && require.order == OrderPolicy::Required

@@ -56,7 +56,7 @@ pub fn wide_case(seed: u64, index: u64) -> Option<Case> {
     let spec = &mut case.file.spec;
     // Looking for what conflicts costs several times what the answers do.
     spec.solve.advice = chance(draws, 0.3);
-    if spec.task.path.closed && chance(draws, 0.3) {
+    if spec.task.closed && chance(draws, 0.3) {
         spec.require.closing = ClosingPolicy::Any;
     }
     Some(case)
@@ -82,7 +82,7 @@ struct Asks {
 fn parsed(draws: &mut Stream, index: u64, points: &[Complex], closed: bool, asks: &Asks) -> Option<Case> {
     let text = text(draws, index, points, closed, asks);
     let mut file = problem_file::parse("random.toml", &text, None, &[]).ok()?;
-    let path = &mut file.spec.task.path;
+    let path = &mut file.spec.task;
     let [x0, y0, x1, y1] = bounding_box(points);
     let size = (x1 - x0).hypot(y1 - y0);
     if asks.samples.is_some() {

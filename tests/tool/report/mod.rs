@@ -136,7 +136,7 @@ fn rounding_never_makes_a_missed_limit_look_met() {
 #[test]
 fn a_missed_tolerance_is_named_with_its_point() {
     let mut record = k18();
-    record.problem.resolved.task.path.tolerance = Some(vec![0.03; 18]);
+    record.problem.resolved.task.tolerance = Some(vec![0.03; 18]);
     record.candidates[0].accepted = false;
     let text = candidates_table(&record, Colour::Never);
     assert!(text.contains("#1: error 0.036777 at point 12, tolerance 0.03"), "{text}");
@@ -275,7 +275,7 @@ fn a_hundred_thousand_points_make_no_gigantic_drawing() {
         let angle = std::f64::consts::TAU * i as f64 / n as f64;
         [angle.cos(), angle.sin()]
     };
-    record.problem.resolved.task.path.points = (0..n).map(circle).collect();
+    record.problem.resolved.task.points = (0..n).map(circle).collect();
     assert!(candidate_svg(&record, 0).len() < 300_000);
     assert!(contact_sheet_svg(&record).len() < 600_000);
 }
@@ -347,7 +347,7 @@ fn a_record_without_candidates_or_points_is_shown_as_such() {
     assert!(candidate_svg(&record, 0).contains("no linkage to draw"));
     assert!(terminal_plot(&record, 0, 60, 20, Glyphs::Braille).contains('●'));
     everything(&record);
-    record.problem.resolved.task.path.points.clear();
+    record.problem.resolved.task.points.clear();
     everything(&record);
     assert_eq!(compare(&[], &[SortKey::Rms], None).table(Colour::Never), "  Nothing to compare.\n");
     assert!(batch_summary(&[], Colour::Never).contains("0 files"));
@@ -359,7 +359,7 @@ fn lists_of_the_wrong_length_and_numbers_that_are_none_do_not_panic() {
         for breakage in 0..6 {
             let mut record = record.clone();
             let candidate = &mut record.candidates[0];
-            let path = &mut record.problem.resolved.task.path;
+            let path = &mut record.problem.resolved.task;
             match breakage {
                 0 => candidate.crank_deg.clear(),
                 1 => candidate.t1_at.truncate(1),
@@ -406,7 +406,7 @@ fn extreme_sizes_are_drawn_within_the_page() {
             parsed(&text);
         }
     }
-    for point in &mut record.problem.resolved.task.path.points {
+    for point in &mut record.problem.resolved.task.points {
         *point = point.map(|x| x * 1e-300);
     }
     everything(&record);

@@ -7,7 +7,7 @@ use linkwright::internals::mechanism::Unit;
 use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
 use linkwright::internals::record::*;
 use linkwright::internals::task::spec::*;
-use linkwright::internals::task::{AngleOffset, PathTask};
+use linkwright::internals::task::{AngleOffset, Task};
 
 /// The 18 points of Kunjur and Krishnamurty (1997).
 pub const K18: [[f64; 2]; 18] = [
@@ -68,7 +68,7 @@ pub const K18_FIRST_ANGLE: f64 = 0.542832786236755;
 pub fn candidate(
     rank: usize,
     linkage: FourBar,
-    task: &PathTask,
+    task: &Task,
     crank_angles: &[f64],
     t1: &[AssemblyMode],
 ) -> Candidate {
@@ -126,7 +126,7 @@ pub fn candidate(
     }
 }
 
-pub fn record(name: &str, path: PathSpec) -> Record {
+pub fn record(name: &str, path: TaskSpec) -> Record {
     Record {
         format: FORMAT,
         tool: Tool { name: "linkwright".into(), version: "0.1.0".into() },
@@ -136,7 +136,7 @@ pub fn record(name: &str, path: PathSpec) -> Record {
             unit: None,
             digest: "0".repeat(64),
             resolved: ProblemSpec {
-                task: TaskSpec { path },
+                task: path,
                 design: DesignSpec::default(),
                 require: RequireSpec::default(),
                 solve: SolveSpec::default(),
@@ -160,8 +160,8 @@ pub fn record(name: &str, path: PathSpec) -> Record {
     }
 }
 
-pub fn path(points: &[[f64; 2]], closed: bool) -> PathSpec {
-    PathSpec { points: points.to_vec(), closed, weight: None, tolerance: None, timing: None, raw: None }
+pub fn path(points: &[[f64; 2]], closed: bool) -> TaskSpec {
+    TaskSpec::path(points.to_vec(), closed)
 }
 
 /// K18 with its optimum and three worse answers, the last one refused.
@@ -172,7 +172,7 @@ pub fn k18() -> Record {
     let mut record = record("eighteen-point", spec);
     record.problem.source = Some("Kunjur & Krishnamurty, 1997".into());
     record.problem.unit = Some(Unit::M);
-    let task = record.problem.resolved.task.path.to_task().unwrap();
+    let task = record.problem.resolved.task.to_task().unwrap();
     let best = k18_optimum();
     for (i, stretch) in [1.0, 1.03, 1.07, 1.12].into_iter().enumerate() {
         let mut parts = NaturalCoordinates::from(best);
@@ -223,7 +223,7 @@ pub fn ellipse() -> Record {
     points[9] = points[0];
     let mut record = record("ten-point ellipse", path(&points, true));
     record.problem.unit = Some(Unit::Mm);
-    let task = record.problem.resolved.task.path.to_task().unwrap();
+    let task = record.problem.resolved.task.to_task().unwrap();
     record.candidates.push(candidate(1, best, &task, &angles, &[AssemblyMode::Plus; 10]));
     record
 }
@@ -233,7 +233,7 @@ pub fn rocking() -> Record {
     let rocker = linkage([0.0, 0.0], [40.0, 0.0], [30.0, 20.0, 25.0, 18.0, 22.0], 1, 1);
     let points = [[30.0, 30.0], [20.0, 38.0], [35.0, 10.0]];
     let mut record = record("rocking", path(&points, false));
-    let task = record.problem.resolved.task.path.to_task().unwrap();
+    let task = record.problem.resolved.task.to_task().unwrap();
     let t1 = [AssemblyMode::Plus, AssemblyMode::Plus, AssemblyMode::Minus];
     record.candidates.push(candidate(1, rocker, &task, &[0.5, 0.9, 0.2], &t1));
     record
@@ -252,7 +252,7 @@ pub fn shapes() -> Record {
         .collect();
     let mut record = record("two hundred points", path(&points, true));
     record.problem.unit = Some(Unit::Mm);
-    let task = record.problem.resolved.task.path.to_task().unwrap();
+    let task = record.problem.resolved.task.to_task().unwrap();
     let t1 = vec![AssemblyMode::Plus; 200];
     record.candidates.push(candidate(1, rocker, &task, &angles, &t1));
     let double = linkage([40.0, 60.0], [60.0, 70.0], [45.0, 50.0, 42.0, 30.0, 40.0], 1, 1);
@@ -274,7 +274,7 @@ pub fn detail() -> Record {
         .collect();
     let mut record = record("detail", path(&points, false));
     record.problem.unit = Some(Unit::In);
-    let task = record.problem.resolved.task.path.to_task().unwrap();
+    let task = record.problem.resolved.task.to_task().unwrap();
     record.candidates.push(candidate(1, big, &task, &angles, &[AssemblyMode::Plus; 8]));
     record
 }

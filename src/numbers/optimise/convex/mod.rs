@@ -3,41 +3,53 @@
 //!
 //! ```text
 //! sum of squares     minimise  sum_j w_j |r_j|^2
-//! max deviation      minimise  T   subject to  |r_j| <= T tol_j
-//! within tolerances  minimise  sum_j w_j |r_j|^2   subject to  |r_j| <= tol_j
+//! max deviation      minimise  T   subject to  |r_jk| <= T tol_jk
+//! within tolerances  minimise  sum_j w_j |r_j|^2   subject to  |r_jk| <= tol_jk
 //! and always         lo <= x <= hi,   g_i(x, s) >= 0
 //! ```
+//!
+//! where tolerances limit the parts r_jk of a residual of R rows: rows 0 and 1 together (the place of a point), then each
+//! further row by itself (an angle).
 //!
 //! At each step the residuals and inequalities are replaced by their linear models r_j + J_j dx and g_i + <dg_i, dx>
 //! inside a trust box, which leaves a quadratic or a second-order cone program ([`super::conic`]). If a point has an
 //! unknown of its own (its tangent t_j is not zero), that unknown takes up the residual along t_j, and only the
-//! component across counts. The curvature of the residuals and inequalities, weighted by their multipliers, is left
+//! components across count. If tolerances limit several parts of its residual, a step along t_j trades one against
+//! another: then tau_j is a variable of the program, and the model is r_j + J_j dx + t_j tau_j. The curvature of the residuals and inequalities, weighted by their multipliers, is left
 //! out by the linear models and learnt from step to step by the symmetric rank-one formula (Broyden 1967; its
 //! positive part is used). Inequalities are elastic: a slack shared by all of them, with a price that grows until the
 //! slack falls, so that a start outside first gets inside (Byrd, Gould, Nocedal and Waltz 2004, steering rules). A
 //! step is accepted if the merit function with this price falls with the true residuals; a rejected one gets one
 //! second-order correction (Fletcher 1982).
 
+mod curvature;
 mod model;
+mod point;
 
 use super::damping::{clamped, moved};
-use super::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, MAX_TAU, PointBlock};
-use model::{Curvature, Model, Step};
+use super::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
+use curvature::Curvature;
+use model::{Model, Step};
+use point::{deviation, is_traded, parts};
 
-/// The objective of a solve. Tolerances: one per point, positive.
+/// The objective of a solve.
+///
+/// Tolerances: R - 1 for each point, positive, point by point. The first limits the length of rows 0 and 1 together,
+/// each further one the magnitude of one further row; an infinite one limits nothing. With the parts r_jk of a residual
+/// that they limit, the deviation of a point is max_k |r_jk| / tol_jk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal<'a> {
     /// The sum of squares, sum_j w_j |r_j|^2.
     SumOfSquares,
-    /// The largest deviation, max_j |r_j| / tol_j; the weights do not enter.
+    /// The largest deviation of a point, max_jk |r_jk| / tol_jk; the weights do not enter.
     MaxDeviation {
-        /// The tolerances tol_j.
+        /// The tolerances tol_jk.
         tolerances: &'a [f64],
     },
-    /// The sum of squares, sum_j w_j |r_j|^2, subject to |r_j| <= tol_j; from a start outside, max_j |r_j| / tol_j is
-    /// reduced first.
+    /// The sum of squares, sum_j w_j |r_j|^2, subject to |r_jk| <= tol_jk; from a start outside, the largest deviation
+    /// is reduced first.
     SumOfSquaresWithin {
-        /// The tolerances tol_j.
+        /// The tolerances tol_jk.
         tolerances: &'a [f64],
     },
 }
@@ -92,9 +104,9 @@ pub struct Multipliers<const N: usize> {
     pub lower: [f64; N],
     /// The multiplier of each upper bound: reducing it by delta raises the objective by this times delta.
     pub upper: [f64; N],
-    /// The multiplier of each point (empty for the plain sum of squares). Max deviation: the share that a point has
-    /// in the maximum; they sum to 1. Within tolerances: reducing tol_j by the part delta of itself raises the
-    /// objective by this times delta.
+    /// The multiplier of each tolerance, R - 1 for each point (empty for the plain sum of squares). Max deviation: the
+    /// share that a part of a residual has in the maximum; they sum to 1. Within tolerances: reducing tol_jk by the part
+    /// delta of itself raises the objective by this times delta.
     pub points: Vec<f64>,
 }
 
@@ -109,7 +121,7 @@ pub struct ConvexResult<const N: usize, S> {
     pub objective: f64,
     /// The violation of the inequalities: the largest -g_i, or 0.
     pub violation: f64,
-    /// The largest deviation, max_j |r_j| / tol_j, if the goal has tolerances, else 0.
+    /// The largest deviation, max_jk |r_jk| / tol_jk, if the goal has tolerances, else 0.
     pub deviation: f64,
     /// The number of linearisations.
     pub evaluations: u64,
@@ -138,50 +150,53 @@ const QUIET_STEPS: usize = 3;
 const FAILED_PROGRAMS: usize = 6;
 
 /// An iterate with its linearisation.
-struct At<const N: usize, S> {
+struct At<const N: usize, const R: usize, S> {
     x: [f64; N],
     state: S,
-    blocks: Vec<PointBlock<N>>,
+    blocks: Vec<PointBlock<N, R>>,
+    /// The inequalities, with derivatives by traded own unknowns alone (see [`is_traded`]); the others follow.
     rows: Vec<ConstraintRow<N>>,
     objective: f64,
     deviation: f64,
     /// The violation of the inequalities: the largest -g_i, or 0.
     violation: f64,
     /// The lack, a dimensionless measure of infeasibility: the maximum over -g_i / length and, within
-    /// tolerances, |r_j| / tol_j - 1.
+    /// tolerances, |r_jk| / tol_jk - 1.
     lack: f64,
 }
 
-/// Returns the length |r|.
-fn norm(r: [f64; 2]) -> f64 {
-    r[0].hypot(r[1])
-}
-
-impl Goal<'_> {
+impl<'a> Goal<'a> {
     /// Returns the tolerances, if the goal has them.
-    fn tolerances(&self) -> Option<&[f64]> {
+    fn tolerances(&self) -> Option<&'a [f64]> {
         match self {
             Goal::SumOfSquares => None,
             Goal::MaxDeviation { tolerances } | Goal::SumOfSquaresWithin { tolerances } => Some(tolerances),
         }
     }
+
+    /// Returns the tolerances of a point with a residual of `rows` rows, if the goal has them.
+    fn tolerances_of(&self, point: usize, rows: usize) -> Option<&'a [f64]> {
+        self.tolerances().map(|list| &list[parts(rows) * point..parts(rows) * (point + 1)])
+    }
 }
 
-fn look<const N: usize, P: BlockLeastSquares<N>>(
+fn look<const N: usize, const R: usize, P: BlockLeastSquares<N, R>>(
     problem: &P,
     goal: &Goal<'_>,
     length: f64,
     x: [f64; N],
     state: P::State,
-) -> Option<At<N, P::State>> {
+) -> Option<At<N, R, P::State>> {
     let sum_sq = problem.cost(&x, &state)?;
     let (mut blocks, mut rows) = (Vec::with_capacity(problem.points()), Vec::new());
     if !problem.linearise(&x, &state, &mut |block| blocks.push(*block)) {
         return None;
     }
-    problem.constraints(&x, &state, &mut |_, row| rows.push(row().followed(&blocks, 0.0)));
+    let traded = |j: usize| blocks.get(j).is_some_and(|block| is_traded(block, goal.tolerances_of(j, R)));
+    problem.constraints(&x, &state, &mut |_, row| rows.push(row().followed(&blocks, 0.0, traded)));
     let deviation = goal.tolerances().map_or(0.0, |tolerances| {
-        blocks.iter().zip(tolerances).fold(0.0, |m: f64, (b, tol)| m.max(norm(b.residual) / tol))
+        let points = blocks.iter().zip(tolerances.chunks_exact(parts(R)));
+        points.fold(0.0, |most: f64, (block, list)| most.max(deviation(&block.residual, list)))
     });
     let objective = if matches!(goal, Goal::MaxDeviation { .. }) { deviation } else { sum_sq };
     let violation = rows.iter().fold(0.0, |m: f64, row| m.max(-row.value));
@@ -199,8 +214,8 @@ fn look<const N: usize, P: BlockLeastSquares<N>>(
 /// all constraints the one of the least objective, else the one that lacks least for its price.
 ///
 /// # Panics
-/// When a goal has fewer tolerances than there are points.
-pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
+/// When a goal has fewer than R - 1 tolerances for each point.
+pub fn solve<const N: usize, const R: usize, P: BlockLeastSquares<N, R>>(
     problem: &P,
     goal: &Goal<'_>,
     start: [f64; N],
@@ -208,7 +223,9 @@ pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
     options: &ConvexOptions<N>,
     stop: &dyn Fn() -> bool,
 ) -> ConvexResult<N, P::State> {
-    assert!(goal.tolerances().is_none_or(|t| t.len() >= problem.points()), "a tolerance a point");
+    const { assert!(R >= 2, "the first tolerance of a point limits two rows") };
+    let wanted = parts(R) * problem.points();
+    assert!(goal.tolerances().is_none_or(|t| t.len() >= wanted), "a tolerance for each part of a residual");
     let x = clamped(start, problem.bounds());
     let Some(at) = look(problem, goal, options.length, x, state.clone()) else {
         return ConvexResult {
@@ -237,11 +254,11 @@ pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
     .run(stop)
 }
 
-struct Solve<'a, const N: usize, P: BlockLeastSquares<N>> {
+struct Solve<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> {
     problem: &'a P,
     goal: &'a Goal<'a>,
     options: &'a ConvexOptions<N>,
-    at: At<N, P::State>,
+    at: At<N, R, P::State>,
     evaluations: u64,
     steps: usize,
     curvature: Curvature<N>,
@@ -249,7 +266,7 @@ struct Solve<'a, const N: usize, P: BlockLeastSquares<N>> {
     multipliers: Option<Multipliers<N>>,
 }
 
-impl<const N: usize, P: BlockLeastSquares<N>> Solve<'_, N, P> {
+impl<const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Solve<'_, N, R, P> {
     fn run(mut self, stop: &dyn Fn() -> bool) -> ConvexResult<N, P::State> {
         let outcome = self.iterate(stop);
         ConvexResult {
@@ -348,11 +365,11 @@ impl<const N: usize, P: BlockLeastSquares<N>> Solve<'_, N, P> {
     /// gain over the merit `now`.
     fn evaluated(
         &mut self,
-        model: &mut Model<'_, N>,
-        step: &Step<N>,
+        model: &mut Model<'_, N, R>,
+        step: &Step<N, R>,
         [now, promised, unit]: [f64; 3],
-    ) -> (f64, Option<At<N, P::State>>) {
-        let won = |solve: &Self, trial: &Option<At<N, P::State>>| {
+    ) -> (f64, Option<At<N, R, P::State>>) {
+        let won = |solve: &Self, trial: &Option<At<N, R, P::State>>| {
             trial
                 .as_ref()
                 .map_or(f64::NEG_INFINITY, |next| now - solve.merit(next.objective, next.lack, unit))
@@ -387,7 +404,7 @@ impl<const N: usize, P: BlockLeastSquares<N>> Solve<'_, N, P> {
     }
 
     /// Solves the program for a step, raising the price of the slack until the lack falls.
-    fn steered(&mut self, model: &mut Model<'_, N>) -> Option<Step<N>> {
+    fn steered(&mut self, model: &mut Model<'_, N, R>) -> Option<Step<N, R>> {
         let mut step = model.solve(&self.curvature, self.price)?;
         while step.lack > self.slight().max(STEER * self.at.lack) && self.price < HIGHEST_PRICE {
             let dearer = (10.0 * self.price).min(HIGHEST_PRICE);
@@ -405,7 +422,7 @@ impl<const N: usize, P: BlockLeastSquares<N>> Solve<'_, N, P> {
     }
 
     /// Evaluates the true residuals and inequalities after a step; `None` if they do not exist.
-    fn trial(&mut self, step: &Step<N>) -> Option<At<N, P::State>> {
+    fn trial(&mut self, step: &Step<N, R>) -> Option<At<N, R, P::State>> {
         self.evaluations += 1;
         let x = moved(&self.at.x, &step.dx, self.problem.bounds());
         let mut state = self.at.state.clone();
@@ -427,5 +444,7 @@ fn trust_after(trust: f64, ratio: f64, reach: f64) -> f64 {
     }
 }
 
+#[cfg(test)]
+mod pose_tests;
 #[cfg(test)]
 mod tests;

@@ -3,6 +3,11 @@
 use super::super::levenberg_marquardt::{EachConstraint, MOST_OWN};
 use super::*;
 
+/// Returns the length |r|.
+fn norm(r: [f64; 2]) -> f64 {
+    r[0].hypot(r[1])
+}
+
 type Residual<'a> = Box<dyn Fn(&[f64; 2]) -> [f64; 2] + 'a>;
 type Inequality<'a> = Box<dyn Fn(&[f64; 2]) -> f64 + 'a>;
 

@@ -2,7 +2,8 @@
 //!
 //! minimise  sum_j w_j |r_j(x, s_j)|^2   subject to  lo <= x <= hi  and  g_i(x, s) >= 0
 //!
-//! where r_j is a planar residual, x in R^N is shared and s_j is a point's own position on a curve. In a step
+//! where r_j is a residual of R rows (2 for a point of the plane, 3 for a pose with its angle), x in R^N is shared and
+//! s_j is a point's own position on a curve. In a step
 //! (dx, tau_j) the linear model is r_j + J_j dx + t_j tau_j with the tangent t_j = dr_j/dtau_j. The tau_j are
 //! eliminated: rows normal to t_j keep weight 1, rows along it weight nu/(|t_j|^2 + nu) with a damping nu, and
 //!
@@ -21,9 +22,11 @@
 //! to max(0, m_i - g_i) after every inner solve. Bounds are kept by an active set and projection. Damping is
 //! Nielsen's ([`super::damping`]).
 
+pub(crate) mod block;
 mod derivatives;
 mod system;
 
+pub use block::{ConstraintRow, MOST_OWN, PointBlock};
 pub use derivatives::derivative_error;
 
 use super::damping::{Damping, clamped, moved};
@@ -31,73 +34,11 @@ use super::ordered::Ordered;
 use nalgebra::SVector;
 use system::{Normal, Workspace, assemble, bounded_step};
 
-/// A point's residual with its derivatives.
-#[derive(Clone, Copy, Debug)]
-pub struct PointBlock<const N: usize> {
-    /// The residual r_j.
-    pub residual: [f64; 2],
-    /// The Jacobian dr_j/dx, two rows.
-    pub jacobian: [[f64; N]; 2],
-    /// The tangent dr_j/dtau_j; zero if the point has no unknown of its own.
-    pub tangent: [f64; 2],
-    /// The weight w_j.
-    pub weight: f64,
-}
-
-impl<const N: usize> PointBlock<N> {
-    /// Returns |t_j|^2.
-    #[inline(always)]
-    pub(super) fn tangent_sq(&self) -> f64 {
-        self.tangent[0] * self.tangent[0] + self.tangent[1] * self.tangent[1]
-    }
-}
-
-/// An inequality g >= 0 with its derivatives.
-#[derive(Clone, Copy, Debug)]
-pub struct ConstraintRow<const N: usize> {
-    /// The value g, in the unit of the residuals.
-    pub value: f64,
-    /// The gradient dg/dx, with the points' own unknowns held fixed.
-    pub gradient: [f64; N],
-    /// The indices of the points on whose own unknowns g depends, each with dg/dtau; `None` everywhere if g depends on
-    /// the shared unknowns alone.
-    pub own: [Option<(usize, f64)>; MOST_OWN],
-}
-
-/// The most points on whose own unknowns one inequality depends.
-pub const MOST_OWN: usize = 4;
-
-impl<const N: usize> ConstraintRow<N> {
-    /// Returns the row with the derivative by the shared unknowns alone, the points' own unknowns following them:
-    ///
-    /// ```text
-    /// tau = -<t, r + J dx> / (|t|^2 + nu)      its best step for the residual,
-    /// dg/dx + dg/dtau dtau/dx
-    /// ```
-    ///
-    /// `blocks` are the points' blocks at the same point of the iteration. If a point's tangent is zero, its
-    /// unknown stays fixed.
-    pub(super) fn followed(mut self, blocks: &[PointBlock<N>], nu: f64) -> Self {
-        let own = std::mem::replace(&mut self.own, [None; MOST_OWN]);
-        for (block, by) in own.into_iter().flatten().filter_map(|(point, by)| Some((blocks.get(point)?, by)))
-        {
-            let (t, t_sq) = (block.tangent, block.tangent_sq());
-            if t_sq > 0.0 {
-                let by = by / (t_sq + nu);
-                for (i, slope) in self.gradient.iter_mut().enumerate() {
-                    *slope -= by * (t[0] * block.jacobian[0][i] + t[1] * block.jacobian[1][i]);
-                }
-            }
-        }
-        self
-    }
-}
-
 /// A function that takes the value g of an inequality, and a function that computes its row.
 pub type EachConstraint<'a, const N: usize> = dyn FnMut(f64, &dyn Fn() -> ConstraintRow<N>) + 'a;
 
-/// A least-squares problem with one block per point.
-pub trait BlockLeastSquares<const N: usize> {
+/// A least-squares problem with one block of R rows per point.
+pub trait BlockLeastSquares<const N: usize, const R: usize = 2> {
     /// The values of the points' own unknowns.
     type State: Clone;
 
@@ -111,10 +52,10 @@ pub trait BlockLeastSquares<const N: usize> {
     fn cost(&self, x: &[f64; N], state: &Self::State) -> Option<f64>;
 
     /// Passes the blocks of all points to `each`, in their order; `false` if a derivative does not exist.
-    fn linearise(&self, x: &[f64; N], state: &Self::State, each: &mut dyn FnMut(&PointBlock<N>)) -> bool;
+    fn linearise(&self, x: &[f64; N], state: &Self::State, each: &mut dyn FnMut(&PointBlock<N, R>)) -> bool;
 
     /// Computes the residuals r_j of all points, in their order; `false` if one does not exist.
-    fn residuals(&self, x: &[f64; N], state: &Self::State, out: &mut Vec<[f64; 2]>) -> bool {
+    fn residuals(&self, x: &[f64; N], state: &Self::State, out: &mut Vec<[f64; R]>) -> bool {
         out.clear();
         self.linearise(x, state, &mut |block| out.push(block.residual))
     }
@@ -140,7 +81,7 @@ pub trait BlockLeastSquares<const N: usize> {
     fn join(&self, _state: &mut Self::State, _leaders: &[usize]) {}
 
     /// Runs a numerical loop, with wider vector instructions if the problem has them.
-    fn wide<R>(&self, work: impl FnOnce() -> R) -> R {
+    fn wide<T>(&self, work: impl FnOnce() -> T) -> T {
         work()
     }
 
@@ -230,7 +171,7 @@ struct Penalty {
 
 impl Penalty {
     /// Computes the penalty: the sum of rho max(0, m - g)^2.
-    fn of<const N: usize, P: BlockLeastSquares<N>>(
+    fn of<const N: usize, const R: usize, P: BlockLeastSquares<N, R>>(
         &self,
         problem: &P,
         x: &[f64; N],
@@ -249,7 +190,7 @@ impl Penalty {
 }
 
 /// Computes the violation of the constraints: the largest -g_i, or 0 if all hold.
-pub fn violation<const N: usize, P: BlockLeastSquares<N>>(
+pub fn violation<const N: usize, const R: usize, P: BlockLeastSquares<N, R>>(
     problem: &P,
     x: &[f64; N],
     state: &P::State,
@@ -263,7 +204,7 @@ pub fn violation<const N: usize, P: BlockLeastSquares<N>>(
 /// steps, and within a step between its passes over the points.
 ///
 /// The start is clamped to its bounds. The best point so far is always returned.
-pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
+pub fn solve<const N: usize, const R: usize, P: BlockLeastSquares<N, R>>(
     problem: &P,
     start: [f64; N],
     state: P::State,
@@ -324,13 +265,13 @@ const FIRST_RHO: f64 = 1.0;
 const RHO_GROWTH: f64 = 8.0;
 
 /// An inner solve: the best point so far, the merit (cost and penalty) there, and the state of the step control.
-struct Inner<'a, const N: usize, P: BlockLeastSquares<N>> {
+struct Inner<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> {
     problem: &'a P,
     result: &'a mut LmResult<N, P::State>,
     penalty: &'a Penalty,
     options: &'a LmOptions,
     stop: &'a dyn Fn() -> bool,
-    work: Workspace<N>,
+    work: Workspace<N, R>,
     trial_state: P::State,
     merit: f64,
     damping: Damping,
@@ -350,7 +291,7 @@ struct Trial<const N: usize> {
     merit: f64,
 }
 
-impl<'a, const N: usize, P: BlockLeastSquares<N>> Inner<'a, N, P> {
+impl<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Inner<'a, N, R, P> {
     fn new(
         problem: &'a P,
         result: &'a mut LmResult<N, P::State>,
@@ -518,7 +459,7 @@ impl<'a, const N: usize, P: BlockLeastSquares<N>> Inner<'a, N, P> {
 
 /// Pools points that have passed each other in a step after all, because the way back to the curves is not straight;
 /// `false` if that fails or `stop` returns true.
-fn put_in_order<const N: usize, P: BlockLeastSquares<N>>(
+fn put_in_order<const N: usize, const R: usize, P: BlockLeastSquares<N, R>>(
     problem: &P,
     x: &[f64; N],
     state: &mut P::State,
@@ -553,3 +494,6 @@ fn put_in_order<const N: usize, P: BlockLeastSquares<N>>(
 
 /// The number of steps in a row with hardly any reduction after which a solve counts as converged.
 const QUIET_STEPS: usize = 3;
+
+#[cfg(test)]
+mod tests;

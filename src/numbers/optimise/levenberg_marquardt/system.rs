@@ -1,10 +1,12 @@
 //! The linear system of a step: normal equations with the points' own unknowns eliminated, pools of points that may
 //! not pass each other, the geodesic acceleration of a step, and the step inside the bounds.
 
+use super::block::{across_and_along, column, dot};
 use super::{AHEAD, BlockLeastSquares, LmResult, MAX_TAU, Penalty, PointBlock};
 use crate::damping::held;
 use crate::ordered::Ordered;
 use nalgebra::{SMatrix, SVector};
+use std::array::from_fn;
 
 pub(super) struct Normal<const N: usize> {
     pub(super) matrix: SMatrix<f64, N, N>,
@@ -14,8 +16,8 @@ pub(super) struct Normal<const N: usize> {
 }
 
 /// The buffers of an inner solve, kept from step to step.
-pub(super) struct Workspace<const N: usize> {
-    pub(super) blocks: Vec<PointBlock<N>>,
+pub(super) struct Workspace<const N: usize, const R: usize> {
+    pub(super) blocks: Vec<PointBlock<N, R>>,
     /// The constraints with a penalty, shift - g > 0: (shift - g, dg/dx).
     pub(super) lacking: Vec<(f64, [f64; N])>,
     /// The stiffness of each point, w_j (|t_j|^2 + nu).
@@ -27,7 +29,7 @@ pub(super) struct Workspace<const N: usize> {
     rows: Rows<N>,
 }
 
-impl<const N: usize> Workspace<N> {
+impl<const N: usize, const R: usize> Workspace<N, R> {
     pub(super) fn new(points: usize) -> Self {
         Workspace {
             blocks: Vec::with_capacity(points),
@@ -45,11 +47,7 @@ impl<const N: usize> Workspace<N> {
         for (j, block) in self.blocks.iter().enumerate() {
             let (t, t_sq) = (block.tangent, block.tangent_sq());
             self.stiffness[j] = block.weight * (t_sq + nu);
-            self.tau[j] = if t_sq == 0.0 {
-                0.0
-            } else {
-                -(t[0] * block.residual[0] + t[1] * block.residual[1]) / (t_sq + nu)
-            };
+            self.tau[j] = if t_sq == 0.0 { 0.0 } else { -dot(&t, &block.residual) / (t_sq + nu) };
         }
     }
 
@@ -57,8 +55,8 @@ impl<const N: usize> Workspace<N> {
     pub(super) fn own_steps_after(&mut self, dx: &[f64; N], nu: f64) {
         for (j, block) in self.blocks.iter().enumerate() {
             let (t, t_sq) = (block.tangent, block.tangent_sq());
-            let moved = |axis: usize| block.residual[axis] + change(0.0, &block.jacobian[axis], dx);
-            let along = t[0] * moved(0) + t[1] * moved(1);
+            let moved = from_fn(|axis| block.residual[axis] + change(0.0, &block.jacobian[axis], dx));
+            let along = dot(&t, &moved);
             self.tau[j] = if t_sq == 0.0 { 0.0 } else { (-along / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU) };
         }
         if !self.gaps.is_empty() {
@@ -71,23 +69,23 @@ impl<const N: usize> Workspace<N> {
     /// part [`AHEAD`] of the step.
     pub(super) fn bending(
         &self,
-        ahead: &[[f64; 2]],
+        ahead: &[[f64; R]],
         dx: &[f64; N],
         nu: f64,
-        bend: &mut Vec<[f64; 2]>,
+        bend: &mut Vec<[f64; R]>,
     ) -> SVector<f64, N> {
         let mut gradient = SVector::<f64, N>::zeros();
         bend.clear();
         for ((block, tau), r) in self.blocks.iter().zip(&self.tau).zip(ahead) {
             let (t, t_sq) = (block.tangent, block.tangent_sq());
-            let second = [0, 1].map(|axis| {
+            let second = from_fn(|axis| {
                 let slope = change(t[axis] * tau, &block.jacobian[axis], dx);
                 2.0 / AHEAD * ((r[axis] - block.residual[axis]) / AHEAD - slope)
             });
             bend.push(second);
             // The part that the point's own unknown does not take up.
-            let taken = if t_sq > 0.0 { (t[0] * second[0] + t[1] * second[1]) / (t_sq + nu) } else { 0.0 };
-            for axis in 0..2 {
+            let taken = if t_sq > 0.0 { dot(&t, &second) / (t_sq + nu) } else { 0.0 };
+            for axis in 0..R {
                 let left = block.weight * (second[axis] - t[axis] * taken);
                 for (sum, by) in gradient.iter_mut().zip(&block.jacobian[axis]) {
                     *sum += left * by;
@@ -98,14 +96,14 @@ impl<const N: usize> Workspace<N> {
     }
 
     /// Adds half the geodesic acceleration to the points' own steps.
-    pub(super) fn bend_own_steps(&mut self, half: &[f64; N], bend: &[[f64; 2]], nu: f64) {
+    pub(super) fn bend_own_steps(&mut self, half: &[f64; N], bend: &[[f64; R]], nu: f64) {
         for ((block, tau), second) in self.blocks.iter().zip(&mut self.tau).zip(bend) {
             let (t, t_sq) = (block.tangent, block.tangent_sq());
             if t_sq == 0.0 {
                 continue;
             }
-            let moved = |axis: usize| change(0.5 * second[axis], &block.jacobian[axis], half);
-            let along = t[0] * moved(0) + t[1] * moved(1);
+            let moved = from_fn(|axis| change(0.5 * second[axis], &block.jacobian[axis], half));
+            let along = dot(&t, &moved);
             *tau = (*tau - along / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU);
         }
     }
@@ -114,7 +112,7 @@ impl<const N: usize> Workspace<N> {
     pub(super) fn promised(&self, dx: &[f64; N], rho: f64) -> f64 {
         let mut promised = 0.0;
         for (block, tau) in self.blocks.iter().zip(&self.tau) {
-            for axis in 0..2 {
+            for axis in 0..R {
                 let change = change(block.tangent[axis] * tau, &block.jacobian[axis], dx);
                 promised -= block.weight * change * (2.0 * block.residual[axis] + change);
             }
@@ -168,29 +166,29 @@ impl<const N: usize> Rows<N> {
         }
     }
 
-    /// Adds the rows of a point whose own unknown is eliminated: the one across its tangent, and the one along it with
+    /// Adds the rows of a point whose own unknown is eliminated: those across its tangent, and the one along it with
     /// the weight that is left.
     #[inline(always)]
-    fn push_point(&mut self, block: &PointBlock<N>, nu: f64) {
+    fn push_point<const R: usize>(&mut self, block: &PointBlock<N, R>, nu: f64) {
         let (t, t_sq, r, j) = (block.tangent, block.tangent_sq(), &block.residual, &block.jacobian);
         if t_sq == 0.0 {
-            return self.push_both(block, r);
+            return self.push_all(block, r);
         }
-        let length = t_sq.sqrt();
-        let (along, normal) = ([t[0] / length, t[1] / length], [-t[1] / length, t[0] / length]);
-        for (axis, weight) in [(normal, 1.0), (along, nu / (t_sq + nu))] {
+        for (place, axis) in across_and_along(&t, t_sq).into_iter().enumerate() {
+            let weight = if place + 1 < R { 1.0 } else { nu / (t_sq + nu) };
             let scale = (block.weight * weight).sqrt();
-            let axis = [scale * axis[0], scale * axis[1]];
-            self.push(|i| axis[0] * j[0][i] + axis[1] * j[1][i], axis[0] * r[0] + axis[1] * r[1]);
+            let axis = axis.map(|component| scale * component);
+            self.push(|i| column(&axis, j, i), dot(&axis, r));
         }
     }
 
-    /// Adds both rows of a point with a residual `r`.
+    /// Adds all rows of a point with a residual `r`.
     #[inline(always)]
-    fn push_both(&mut self, block: &PointBlock<N>, r: &[f64; 2]) {
-        let (scale, j) = (block.weight.sqrt(), &block.jacobian);
-        self.push(|i| scale * j[0][i], scale * r[0]);
-        self.push(|i| scale * j[1][i], scale * r[1]);
+    fn push_all<const R: usize>(&mut self, block: &PointBlock<N, R>, r: &[f64; R]) {
+        let scale = block.weight.sqrt();
+        for (row, residual) in block.jacobian.iter().zip(r) {
+            self.push(|i| scale * row[i], scale * residual);
+        }
     }
 
     /// Computes J^T J and J^T r. Each sum runs in [`LANES`] lanes on every machine, so its rounding is the same
@@ -247,7 +245,7 @@ struct Pool<const N: usize> {
     along: f64,
 }
 
-impl<const N: usize> Workspace<N> {
+impl<const N: usize, const R: usize> Workspace<N, R> {
     /// Adds the rows of all pooled points, r_j + t_j m_j + J_j dx + t_j tau with the step m_j to the common place and
     /// one tau for a pool.
     fn push_pools(&mut self) -> Vec<Pool<N>> {
@@ -257,12 +255,12 @@ impl<const N: usize> Workspace<N> {
             for &(index, way) in members {
                 let block = &self.blocks[index];
                 let (t, j, w) = (block.tangent, &block.jacobian, block.weight);
-                let r = [block.residual[0] + t[0] * way, block.residual[1] + t[1] * way];
-                self.rows.push_both(block, &r);
-                for (sum, (x, y)) in pool.by_tau.iter_mut().zip(j[0].iter().zip(&j[1])) {
-                    *sum += w * (t[0] * x + t[1] * y);
+                let r = from_fn(|axis| block.residual[axis] + t[axis] * way);
+                self.rows.push_all(block, &r);
+                for (i, sum) in pool.by_tau.iter_mut().enumerate() {
+                    *sum += w * column(&t, j, i);
                 }
-                pool.along += w * (t[0] * r[0] + t[1] * r[1]);
+                pool.along += w * dot(&t, &r);
                 pool.stiffness += self.stiffness[index];
             }
             if pool.stiffness > 0.0 {
@@ -274,12 +272,12 @@ impl<const N: usize> Workspace<N> {
 }
 
 /// Assembles the normal equations at a point; `None` if a derivative does not exist or a number is not finite.
-pub(super) fn assemble<const N: usize, P: BlockLeastSquares<N>>(
+pub(super) fn assemble<const N: usize, const R: usize, P: BlockLeastSquares<N, R>>(
     problem: &P,
     at: &LmResult<N, P::State>,
     penalty: &Penalty,
     nu: f64,
-    work: &mut Workspace<N>,
+    work: &mut Workspace<N, R>,
 ) -> Option<Normal<N>> {
     work.blocks.clear();
     let complete = problem.linearise(&at.x, &at.state, &mut |block| work.blocks.push(*block));
@@ -315,7 +313,7 @@ pub(super) fn assemble<const N: usize, P: BlockLeastSquares<N>>(
         let lack = penalty.shift[i] - value;
         i += 1;
         if lack > 0.0 {
-            let row = row().followed(&work.blocks, nu);
+            let row = row().followed(&work.blocks, nu, |_| false);
             work.lacking.push((lack, row.gradient));
             add_row(&mut matrix, &mut gradient, penalty.rho, &row.gradient.map(|g| -g), lack);
         }

@@ -5,15 +5,17 @@
 //! The requirements are best met near it by a linkage that cannot stray: with one circuit if branches are free, with an
 //! input that turns fully if one branch is required.
 
+use super::constants::free::{LED_BACK_MOST, WORTH_LEADING_BACK};
+use super::multistart::{Effort, SHORT_FIT, Spender, by_merit};
 use crate::mechanism::four_bar::mobility::linkage_type;
 use crate::mechanism::{AssemblyMode, Branch, LinkageType};
-use crate::synthesis::constants::free::LED_BACK_MOST;
 use crate::task::Problem;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 
 /// Types whose circuits are branches: the input turns fully.
-pub(super) const ONE_BRANCH: [LinkageType; 2] = [LinkageType::CrankRocker, LinkageType::DoubleCrank];
+pub(in crate::synthesis) const ONE_BRANCH: [LinkageType; 2] =
+    [LinkageType::CrankRocker, LinkageType::DoubleCrank];
 
 /// Returns the most evaluations that a fit from a start is worth. If one branch is required and no type, only a start
 /// that was led back, or is near an end that was, aims at a type.
@@ -43,6 +45,44 @@ pub(super) fn strayed(problem: &Problem, start: &Start) -> bool {
         (problem.circuit_any() || other.circuit == home.circuit) && (problem.branch_any() || other == home)
     };
     !start.positions.iter().map(branch).all(allowed)
+}
+
+impl Spender<'_> {
+    /// As `fit`; if the points end on circuits or branches that the problem does not allow together, also fits from
+    /// there to the nearest ends that it allows.
+    pub(super) fn fit_as_required(
+        &mut self,
+        problem: &Problem,
+        start: Start,
+        effort: Effort,
+    ) -> Option<(f64, Start)> {
+        let most = worth_spending(problem, &start);
+        let (merit, end) = self.fit(problem, start, effort, most)?;
+        if !strayed(problem, &end) {
+            return Some((merit, end));
+        }
+        let mut back = led_back(problem, &end);
+        if back.len() > 1 {
+            // The more promising one first.
+            let mut tried: Vec<(f64, Start)> = Vec::with_capacity(back.len());
+            for start in back {
+                let most = worth_spending(problem, &start);
+                tried.extend(self.fit(problem, start, SHORT_FIT, most));
+            }
+            tried.retain(|(again, _)| *again <= WORTH_LEADING_BACK * merit);
+            by_merit(&mut tried, usize::MAX);
+            back = tried.into_iter().map(|(_, start)| start).collect();
+        }
+        for start in back {
+            let most = worth_spending(problem, &start);
+            let again = self.fit(problem, start, effort, most).filter(|(_, end)| !strayed(problem, end));
+            if again.is_some() {
+                return again;
+            }
+        }
+        // If that fails: the end that the referee will refuse.
+        Some((merit, end))
+    }
 }
 
 /// Returns starts near a strayed one that aim at types whose points cannot stray; empty if the problem allows no such

@@ -1,7 +1,10 @@
-//! The synthesis task: a path for the coupler point, with or without crank angles at its points.
+//! The synthesis task: a list of targets for the coupler point and, in poses, for the angle of the body, with or without
+//! crank angles.
 //!
-//! A target of n points T_j is met by a linkage at positions (phi_j, t1_j); the structural error at point j is T_j -
-//! P(phi_j, t1_j). With *prescribed timing* the crank angles are given (up to a common offset, from the x axis, or from
+//! A list of n targets is met by a linkage at positions (phi_j, t1_j). The structural error of the place of target j is
+//! T_j - P(phi_j, t1_j). A target may also give the angle theta_j of a body that is fixed to the coupler: its structural
+//! error is theta_j - (arg(D_j - C_j) + beta), within half a turn, where beta is the angle from the direction C -> D to the
+//! body's x axis (its frame). A list without such angles is a *path*, one with them a *motion*. With *prescribed timing* the crank angles are given (up to a common offset, from the x axis, or from
 //! the ground line A -> B); with *free timing* each is chosen to be nearest. This module uses `mechanism` and
 //! nothing else of the crate.
 
@@ -52,20 +55,32 @@ pub enum Return {
 /// number.
 pub const SMALLEST_SIZE: f64 = 1e-100;
 
-/// A path to trace.
+/// The angles of a body at the targets of a motion.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PathTask {
+pub struct Body {
+    /// The angle of the body at each target, in radians; `None`: only the place counts there.
+    pub angles: Vec<Option<f64>>,
+    /// The length that an angle error of one radian counts like; positive.
+    pub angle_weight: f64,
+    /// The largest angle error accepted at each target, in radians.
+    pub tolerances: Option<Vec<f64>>,
+}
+
+/// A list of targets: a path to trace, or poses that a body is to pass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Task {
     points: Vec<Complex>,
     weights: Vec<f64>,
     tolerances: Option<Vec<f64>>,
     closed: bool,
     comes_back: Return,
     timing: Timing,
+    body: Option<Body>,
     size: f64,
     centre: Complex,
 }
 
-/// The error of numbers that do not make a path task.
+/// The error of numbers that do not make a task.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TaskError {
     /// The path has fewer than two points.
@@ -83,6 +98,12 @@ pub enum TaskError {
     /// counted from 0.
     #[error("points {0} and {next} are equal", next = .0 + 1)]
     AdjacentEqual(usize),
+    /// No target of a motion has an angle.
+    #[error("no target has an angle: without angles this is a path")]
+    NoAngle,
+    /// The length that an angle error of one radian counts like is not a positive number.
+    #[error("angle_weight = {0}: it must be a length above 0")]
+    AngleWeight(f64),
     /// All points in one place, within [`SMALLEST_SIZE`].
     #[error("all points are equal, or lie within {size:e} of each other", size = SMALLEST_SIZE)]
     NoExtent,
@@ -119,24 +140,54 @@ pub(crate) fn corners(points: &[[f64; 2]]) -> ([f64; 2], [f64; 2]) {
 
 /// The optional lists of a path task.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct PathOptions {
+pub struct TaskOptions {
     /// One positive weight per point; they enter the objective only.
     pub weights: Option<Vec<f64>>,
     /// One tolerance per point: the largest error accepted there.
     pub tolerances: Option<Vec<f64>>,
     /// Whether the target is a closed curve: the last point is followed by the first.
     pub closed: bool,
+    /// The angles of a body, in a motion.
+    pub body: Option<Body>,
 }
 
-impl PathTask {
-    /// Creates a path through `points` with the given timing.
+/// Checks the angles of a body at `n` targets.
+fn check_body(body: &Body, n: usize) -> Result<(), TaskError> {
+    let Body { angles, angle_weight, tolerances } = body;
+    let same_length = |what, values: usize| {
+        if values == n { Ok(()) } else { Err(TaskError::LengthMismatch { what, points: n, values }) }
+    };
+    same_length("the angle", angles.len())?;
+    let mut given = angles.iter().enumerate().filter_map(|(index, angle)| Some((index, (*angle)?)));
+    if let Some((index, value)) = given.find(|(_, angle)| !(angle.abs() <= MAX_MAGNITUDE)) {
+        return Err(TaskError::NotFinite { index, value });
+    }
+    if angles.iter().all(Option::is_none) {
+        return Err(TaskError::NoAngle);
+    }
+    if !(SMALLEST_SIZE..=MAX_MAGNITUDE).contains(angle_weight) {
+        return Err(TaskError::AngleWeight(*angle_weight));
+    }
+    let Some(tolerances) = tolerances else { return Ok(()) };
+    same_length("tolerance_deg", tolerances.len())?;
+    match tolerances.iter().position(|t| !(0.0..=MAX_MAGNITUDE).contains(t)) {
+        None => Ok(()),
+        Some(index) => {
+            let value = tolerances[index].to_degrees();
+            Err(TaskError::OutOfRange { what: "tolerance_deg", index, value, must: "0 or more" })
+        }
+    }
+}
+
+impl Task {
+    /// Creates a list of targets at `points` with the given timing.
     ///
     /// A last point equal to the first is kept. Adjacent equal points are refused unless their prescribed
-    /// crank angles are equal modulo a turn.
+    /// crank angles are equal modulo a turn, or the body lies there at different angles.
     ///
     /// # Errors
     /// [`TaskError`], by its variants.
-    pub fn new(points: Vec<[f64; 2]>, timing: Timing, options: PathOptions) -> Result<Self, TaskError> {
+    pub fn new(points: Vec<[f64; 2]>, timing: Timing, options: TaskOptions) -> Result<Self, TaskError> {
         let n = points.len();
         if n < 2 {
             return Err(TaskError::TooFewPoints(n));
@@ -168,10 +219,14 @@ impl PathTask {
                 return Err(TaskError::OutOfRange { what, index, value: list[index], must });
             }
         }
+        if let Some(body) = &options.body {
+            check_body(body, n)?;
+        }
         let (low, high) = corners(&points);
-        let size = f64::hypot(high[0] - low[0], high[1] - low[1]);
+        let mut size = f64::hypot(high[0] - low[0], high[1] - low[1]);
         if size < SMALLEST_SIZE {
-            return Err(TaskError::NoExtent);
+            // A body that only turns has the scale of its angles.
+            size = options.body.as_ref().map(|body| body.angle_weight).ok_or(TaskError::NoExtent)?;
         }
         for i in 0..n - 1 {
             let timed_equal = match &timing {
@@ -181,17 +236,19 @@ impl PathTask {
                     (turns - turns.round()).abs() <= 1e-9
                 }
             };
-            if points[i] == points[i + 1] && !timed_equal {
+            let turned = options.body.as_ref().is_some_and(|body| body.angles[i] != body.angles[i + 1]);
+            if points[i] == points[i + 1] && !timed_equal && !turned {
                 return Err(TaskError::AdjacentEqual(i));
             }
         }
-        Ok(PathTask {
+        Ok(Task {
             points: points.into_iter().map(crate::mechanism::point).collect(),
             weights: options.weights.unwrap_or_else(|| vec![1.0; n]),
             tolerances: options.tolerances,
             closed: options.closed,
             comes_back: Return::default(),
             timing,
+            body: options.body,
             size,
             centre: Complex::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])),
         })
@@ -199,12 +256,12 @@ impl PathTask {
 
     /// Returns the same task with other weights, one positive number per point.
     pub(super) fn with_weights(self, weights: Vec<f64>) -> Self {
-        PathTask { weights, ..self }
+        Task { weights, ..self }
     }
 
     /// Returns the same task with another rule for the way back to its first point.
     pub fn coming_back(self, comes_back: Return) -> Self {
-        PathTask { comes_back, ..self }
+        Task { comes_back, ..self }
     }
 
     /// Returns the target points.
@@ -232,12 +289,17 @@ impl PathTask {
         self.tolerances.as_deref()
     }
 
+    /// Returns whether an error is limited at each target: of the place or of the body's angle.
+    pub fn has_tolerances(&self) -> bool {
+        self.tolerances.is_some() || self.body.as_ref().is_some_and(|body| body.tolerances.is_some())
+    }
+
     /// Returns whether the target is a closed curve.
     pub fn closed(&self) -> bool {
         self.closed
     }
 
-    /// Returns the rule for the motion's way back to the first point; it matters only if [`PathTask::returns`].
+    /// Returns the rule for the motion's way back to the first point; it matters only if [`Task::returns`].
     pub fn comes_back(&self) -> Return {
         self.comes_back
     }
@@ -248,9 +310,16 @@ impl PathTask {
         self.closed || (self.timing == Timing::Free && self.repeats_first())
     }
 
-    /// Returns whether the last point repeats the first.
+    /// Returns whether the last target repeats the first.
     pub fn repeats_first(&self) -> bool {
-        self.points.len() > 2 && self.points[0] == self.points[self.points.len() - 1]
+        let last = self.points.len() - 1;
+        let as_first = |body: &Body| body.angles[0] == body.angles[last];
+        last > 1 && self.points[0] == self.points[last] && self.body.as_ref().is_none_or(as_first)
+    }
+
+    /// Returns the angles of the body, in a motion.
+    pub fn body(&self) -> Option<&Body> {
+        self.body.as_ref()
     }
 
     /// Returns the timing.
@@ -258,7 +327,8 @@ impl PathTask {
         &self.timing
     }
 
-    /// Returns the diagonal of the target's bounding box; positive.
+    /// Returns the diagonal of the target's bounding box; of a body that only turns, the length that an angle error of one
+    /// radian counts like. Positive.
     pub fn size(&self) -> f64 {
         self.size
     }

@@ -1,0 +1,196 @@
+//! RR dyads through four poses: the circle-point and centre-point curves, by the compatibility linkage.
+//!
+//! Vectors at pose 0: W from the pivot G to the pin, Z from the pin to the body's origin. The dyad turns W by E_j and Z by
+//! T_j = Q_j/Q_0 on the way to pose j:
+//!
+//! ```text
+//! W (E_j - 1) + Z t_j = d_j,      t_j = T_j - 1,  d_j = P_j - P_0,  j = 1, 2, 3
+//! D1 E1 + D2 E2 + D3 E3 = D1 + D2 + D3      (the three are compatible)
+//! D1 = t2 d3 - t3 d2,  D2 = t3 d1 - t1 d3,  D3 = t1 d2 - t2 d1
+//! ```
+//!
+//! The second line is the loop of a four-bar with links |D_j| and the ground |D1 + D2 + D3|, whose positions are the dyads:
+//! m = -Z/Q_0 and G = P_0 - Z - W. The position E_1 = E_2 = E_3 = 1 belongs to every choice of W and counts as none.
+
+use super::scale::Scale;
+use crate::mechanism::{Complex, Dyad, Pose};
+use std::f64::consts::{PI, TAU};
+
+/// Links |D_j| below this part of the largest product of their terms are rounding.
+const ZERO: f64 = 1e-13;
+
+/// Greatest distance from the circle, in parts of size and length, of a dyad of the curve.
+const EXACT: f64 = 1e-12;
+
+/// Greatest negative square of a root that is zero but for rounding.
+const OPEN: f64 = 1e-9;
+
+/// Greatest link and pivot's or pin's distance, in sizes: the curves run to infinity.
+const FARTHEST: f64 = 1e3;
+
+/// Returns up to `samples` RR dyads through four poses, in their order along the circle-point curve: one for each step of
+/// a parameter that passes over every circuit of the compatibility linkage, except those whose pin, pivot or length is
+/// beyond a thousand sizes.
+///
+/// None if more than a curve of dyads meets the poses (equal ones among them, equal angles at all of them, turning about
+/// one point).
+pub fn through_four_curve(poses: &[Pose; 4], samples: usize) -> Vec<Dyad> {
+    let Some(scale) = Scale::of(poses) else { return Vec::new() };
+    let poses = poses.map(|pose| scale.pose(&pose));
+    let Some(compatibility) = Compatibility::of(&poses) else { return Vec::new() };
+    let turns = compatibility.circuits(samples);
+    turns.into_iter().filter_map(|turns| compatibility.dyad(&poses, turns)).map(|d| scale.back(d)).collect()
+}
+
+/// The compatibility linkage, its poses 1 to 3 numbered so that the first link is the shortest.
+struct Compatibility {
+    /// D1, D2, D3.
+    links: [Complex; 3],
+    /// t_j and d_j.
+    equations: [[Complex; 2]; 3],
+}
+
+impl Compatibility {
+    fn of(poses: &[Pose; 4]) -> Option<Self> {
+        let equation = |j: usize| {
+            let turn = poses[j].direction * poses[0].direction.conj() - 1.0;
+            [turn, poses[j].position - poses[0].position]
+        };
+        let by_number = [1, 2, 3].map(equation);
+        let link = |i: usize, k: usize| {
+            let [[one, to_one], [other, to_other]] = [by_number[i], by_number[k]];
+            [one * to_other, other * to_one]
+        };
+        let terms = [link(1, 2), link(2, 0), link(0, 1)];
+        let largest = terms.iter().flatten().fold(0.0_f64, |most, term| most.max(term.norm()));
+        let links = terms.map(|[one, other]| one - other);
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &k| links[i].norm().total_cmp(&links[k].norm()));
+        // One link may vanish (three poses with one pole); then the others are equal, and positions remain.
+        let matters = links[order[1]].norm() > ZERO * largest;
+        matters
+            .then(|| Compatibility { links: order.map(|k| links[k]), equations: order.map(|k| by_number[k]) })
+    }
+
+    /// Returns positions [E1, E2, E3] at up to `samples` steps along the linkage's circuits.
+    fn circuits(&self, samples: usize) -> Vec<[Complex; 3]> {
+        let [drive, one, other] = self.links.map(|link| link.norm());
+        let ground: Complex = self.links.iter().sum();
+        // |V|^2 = |S|^2 + |D1|^2 - 2 |S||D1| cos phi must lie between the squares of |D2| -+ |D3|.
+        let (sum, product) = (ground.norm_sqr() + drive * drive, 2.0 * ground.norm() * drive);
+        let cosine = |reach: f64| if product > 0.0 { (sum - reach * reach) / product } else { f64::NAN };
+        // A limit of the cosine that is not one, or where there is none, is a full turn.
+        let low = cosine(one + other).max(-1.0);
+        let high = cosine(one - other).min(1.0);
+        let limits = [high.clamp(-1.0, 1.0).acos(), low.clamp(-1.0, 1.0).acos()];
+        let full = limits == [0.0, PI] || product == 0.0;
+        let step = |count: usize| move |k: usize| TAU * (k as f64 + 0.5) / count as f64;
+        let mut found = Vec::with_capacity(samples);
+        let mut push = |phi: f64, side: f64| found.extend(self.position(ground, phi, side));
+        match limits {
+            _ if full => {
+                let half = samples / 2;
+                for side in [1.0, -1.0] {
+                    (0..half).map(step(half)).for_each(|phi| push(phi, side));
+                }
+            }
+            // One arc about phi = 0 or about phi = pi, out on one side and back on the other.
+            [least, most] if least == 0.0 || most == PI => {
+                let (middle, reach) = if least == 0.0 { (0.0, most) } else { (PI, PI - least) };
+                for psi in (0..samples).map(step(samples)) {
+                    push(middle + reach * psi.cos(), psi.sin().signum());
+                }
+            }
+            [least, most] => {
+                let half = samples / 2;
+                for arc in [1.0, -1.0] {
+                    for psi in (0..half).map(step(half)) {
+                        push(
+                            arc * (0.5 * (least + most) + 0.5 * (most - least) * psi.cos()),
+                            psi.sin().signum(),
+                        );
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    /// Returns the position at which D1 E1 lies at an angle phi from the ground, on a side; `None` if the loop is open.
+    ///
+    /// V = S - D1 E1 = D2 E2 + D3 E3.
+    fn position(&self, ground: Complex, phi: f64, side: f64) -> Option<[Complex; 3]> {
+        let [drive, one, other] = self.links;
+        let from = if ground.norm() > 0.0 { ground / ground.norm() } else { Complex::new(1.0, 0.0) };
+        let driven = from * Complex::from_polar(drive.norm(), phi);
+        let v = ground - driven;
+        let v_sq = v.norm_sqr();
+        let (one_sq, other_sq) = (one.norm_sqr(), other.norm_sqr());
+        let along = 0.5 * (1.0 + (one_sq - other_sq) / v_sq);
+        let across_sq = one_sq / v_sq - along * along;
+        // At the ends of an arc the root is zero to the rounding.
+        if across_sq.is_nan() || across_sq < -OPEN {
+            return None;
+        }
+        let first = v * Complex::new(along, side * across_sq.max(0.0).sqrt());
+        let turn = |to: Complex, link: Complex| to / link * (link.norm() / to.norm());
+        let turns = [
+            if drive.norm() > 0.0 { turn(driven, drive) } else { Complex::from_polar(1.0, phi) },
+            turn(first, one),
+            turn(v - first, other),
+        ];
+        turns.iter().all(|turn| turn.is_finite()).then_some(turns)
+    }
+
+    /// Returns the dyad that turns its link so; `None` if it turns it nowhere, or is too far away.
+    fn dyad(&self, poses: &[Pose; 4], turns: [Complex; 3]) -> Option<Dyad> {
+        // The two equations whose determinant is largest.
+        let equation = |k: usize| (turns[k] - 1.0, self.equations[k]);
+        let pairs = [[0, 1], [0, 2], [1, 2]].map(|[i, k]| {
+            let ((e1, [t1, d1]), (e2, [t2, d2])) = (equation(i), equation(k));
+            (e1 * t2 - e2 * t1, [d1 * t2 - d2 * t1, e1 * d2 - e2 * d1])
+        });
+        let (determinant, [w, z]) =
+            pairs.into_iter().max_by(|(one, _), (other, _)| one.norm().total_cmp(&other.norm()))?;
+        let (w, z) = (w / determinant, z / determinant);
+        let pin = -z * poses[0].direction.conj();
+        let pivot = poses[0].position - z - w;
+        let is_near = pin.norm() + pivot.norm() + w.norm() < FARTHEST;
+        if !is_near {
+            return None;
+        }
+        let length = poses.iter().map(|pose| (pose.at(pin) - pivot).norm()).sum::<f64>() / 4.0;
+        let dyad = Dyad::RR { pin, pivot, length };
+        (dyad.largest_residual(poses) <= EXACT * (1.0 + length) && length > ZERO).then_some(dyad)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture::{Moved, error, nearest, random_poses, size};
+    use super::*;
+    use crate::numbers::arithmetic::streams::stream;
+
+    #[test]
+    fn the_curve_of_four_poses_meets_them_and_passes_the_dyads_of_a_linkage() {
+        let draws = &mut stream(27, 0);
+        let (mut worst, mut all): (f64, usize) = (0.0, 0);
+        for case in 0..50 {
+            let poses: [Pose; 4] = random_poses(draws, 4).try_into().expect("four");
+            let curve = through_four_curve(&poses, 100);
+            assert!(curve.len() > 50 && curve.len() <= 100, "case {case}: {}", curve.len());
+            all += curve.len();
+            worst = curve.iter().map(|dyad| error(dyad, &poses)).fold(worst, f64::max);
+        }
+        assert!(worst < 1e-12 && all > 4500, "{worst:e}, {all}");
+        let (mut passed, cases) = (0, 50);
+        for _ in 0..cases {
+            let moved = Moved::random(draws, 4);
+            let poses: [Pose; 4] = moved.poses.clone().try_into().expect("four");
+            let curve = through_four_curve(&poses, 2000);
+            let passes = |dyad: &Dyad| nearest(dyad, &curve) < 0.1 * size(&poses);
+            passed += usize::from(moved.dyads().iter().all(passes));
+        }
+        assert!(passed >= 45, "{passed} of {cases}");
+    }
+}

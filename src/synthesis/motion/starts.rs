@@ -1,0 +1,190 @@
+//! Starts of a motion search: pairs of dyads that guide the body nearly through its poses.
+//!
+//! The first round takes the dyads that the poses themselves suggest: those of the kernel of their linear rows, the
+//! minima of the map of circle errors, and dyads through a few sets of five poses. Later rounds draw further sets of five,
+//! and pins at random, each with its best circle. Every two dyads are a linkage, either of them the crank.
+
+use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
+use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, CouplerSide, Dyad, Pose};
+use crate::numbers::arithmetic::streams::{Stream, uniform};
+use crate::synthesis::constants::motion::{GRID, MINIMA, PINS, REACH, SETS_FIRST, SETS_LATER};
+use crate::synthesis::dyads::{
+    Pair, circle_fit, circle_minima, nearest_in_kernel, pair, through_four_curve, through_random_five,
+    through_three_from_pin,
+};
+use crate::task::forms::design_space::Shape;
+use crate::task::forms::rows::{assembly_of, nearest_type};
+use crate::task::forms::start::Start;
+use crate::task::forms::torus::Positions;
+use crate::task::{Problem, Setting};
+
+/// A generator of starts for the poses of a problem.
+pub(super) struct DyadStarts<'a> {
+    problem: &'a Problem,
+    /// The poses of the targets that give an angle, with their weights.
+    poses: Vec<Pose>,
+    weights: Vec<f64>,
+}
+
+impl<'a> DyadStarts<'a> {
+    pub(super) fn new(problem: &'a Problem) -> Self {
+        let task = problem.task();
+        let angles = task.body().map_or(&[][..], |body| &body.angles);
+        let given = task.points().iter().zip(angles).zip(task.weights());
+        let (poses, weights) = given
+            .filter_map(|((point, angle), weight)| Some((Pose::new(*point, (*angle)?), *weight)))
+            .unzip();
+        DyadStarts { problem, poses, weights }
+    }
+
+    /// Returns the dyads of a round: those that the poses suggest in the first one, else drawn ones.
+    pub(super) fn dyads(&self, first: bool, stream: &mut Stream) -> Vec<Dyad> {
+        let poses = self.poses.as_slice();
+        let mut dyads = Vec::new();
+        if first {
+            dyads = nearest_in_kernel(poses);
+            let mut minima = circle_minima(poses, Some(&self.weights), GRID, REACH);
+            minima.truncate(MINIMA);
+            dyads.extend(minima);
+        }
+        for _ in 0..if first { SETS_FIRST } else { SETS_LATER } {
+            dyads.extend(through_random_five(poses, stream));
+        }
+        if first && poses.len() == 4 {
+            let four: [Pose; 4] = std::array::from_fn(|k| poses[k]);
+            dyads.extend(through_four_curve(&four, GRID));
+        }
+        while dyads.len() < PINS {
+            match self.drawn(stream) {
+                Some(dyad) => dyads.push(dyad),
+                None => break,
+            }
+        }
+        dyads.retain(|dyad| matches!(dyad, Dyad::RR { .. }));
+        dyads
+    }
+
+    /// Draws a pin of the body, with the circle that it stays nearest to.
+    fn drawn(&self, stream: &mut Stream) -> Option<Dyad> {
+        let reach = REACH * self.problem.task().size();
+        for _ in 0..PINS {
+            let pin = Complex::new(uniform(stream, -reach, reach), uniform(stream, -reach, reach));
+            let dyad = match *self.poses.as_slice() {
+                [one, second, third] => through_three_from_pin(&[one, second, third], pin),
+                _ => circle_fit(&self.poses, pin, Some(&self.weights)).map(|fit| fit.dyad(pin)),
+            };
+            if dyad.is_some() {
+                return dyad;
+            }
+        }
+        None
+    }
+
+    /// Returns the starts at every two of the dyads.
+    pub(super) fn pairs(&self, dyads: &[Dyad]) -> Vec<Start> {
+        let mut starts = Vec::new();
+        for (i, one) in dyads.iter().enumerate() {
+            for other in &dyads[..i] {
+                starts.extend(pair(one, other).and_then(|pair| self.start(&pair)));
+            }
+        }
+        starts
+    }
+
+    /// Returns the start at a pair of dyads; the crank is the first one or, if that alone is on one branch, the second.
+    fn start(&self, pair: &Pair) -> Option<Start> {
+        let positions = self.positions(pair)?;
+        let setting = Setting {
+            aim: None,
+            assembly: AssemblyMode::Plus,
+            direction: self.problem.directions()[0],
+            side: CouplerSide::of(pair.shape.offset.im),
+        };
+        let as_it_is = made(self.problem, setting, &pair.shape, pair.frame_angle, positions)?;
+        let other = swapped(self.problem, &as_it_is);
+        let serves = |start: &Start| is_on_one_branch(self.problem, start);
+        match other {
+            Some(other) if serves(&other) && !serves(&as_it_is) => Some(other),
+            _ => Some(as_it_is),
+        }
+    }
+
+    /// Returns the positions of a pair at all targets: at the poses by the body's place there, else at the nearest point of
+    /// the coupler's curve.
+    fn positions(&self, pair: &Pair) -> Option<Positions> {
+        let at_poses = pair.positions(&self.poses)?;
+        let task = self.problem.task();
+        if at_poses.len() == task.len() {
+            return Some(at_poses);
+        }
+        let angles = &task.body()?.angles;
+        let [e, u] = *at_poses.first()?;
+        let assembly = assembly_of(&pair.shape, e, u);
+        let linkage = pair.shape.linkage(assembly).ok()?;
+        let curve = CouplerCurve::through(&linkage, e.arg(), assembly, DEFAULT_SAMPLES);
+        let mut poses = at_poses.into_iter();
+        let position = |(target, angle): (&Complex, &Option<f64>)| {
+            if angle.is_some() {
+                return poses.next();
+            }
+            let (crank_angle, assembly) = curve.position_at(curve.nearest(*target)?.parameter);
+            let joints = linkage.position_with(crank_angle, assembly).joints()?;
+            let coupler = joints.follower_pin - joints.crank_pin;
+            Some([Complex::from_polar(1.0, crank_angle), coupler / pair.shape.coupler])
+        };
+        task.points().iter().zip(angles).map(position).collect()
+    }
+}
+
+/// Returns the start of a shape with the frame of its body; it aims at the nearest type if types are required.
+fn made(
+    problem: &Problem,
+    setting: Setting,
+    shape: &Shape,
+    frame: f64,
+    positions: Positions,
+) -> Option<Start> {
+    let aim = if problem.aims_at_types() { nearest_type(shape.links(), problem.types()) } else { None };
+    let [e, u] = *positions.first()?;
+    let setting = Setting {
+        aim,
+        assembly: assembly_of(shape, e, u),
+        side: CouplerSide::of(shape.offset.im),
+        ..setting
+    };
+    Some(Start { design: problem.space(setting.side).design(shape, frame), setting, positions })
+}
+
+/// Returns the start with crank and follower exchanged: the same linkage, driven from its other side.
+///
+/// ```text
+/// e' = (A + a e + b u - B)/c,   u' = -u,   Z' = b - Z,   beta' = beta + pi
+/// ```
+pub(super) fn swapped(problem: &Problem, start: &Start) -> Option<Start> {
+    let space = problem.space(start.setting.side);
+    let shape = space.shape(&start.design)?;
+    let exchanged = Shape {
+        crank_pivot: shape.follower_pivot,
+        follower_pivot: shape.crank_pivot,
+        crank: shape.follower,
+        coupler: shape.coupler,
+        follower: shape.crank,
+        offset: shape.coupler - shape.offset,
+    };
+    let position = |[e, u]: &[Complex; 2]| {
+        let follower = shape.crank_pivot + e * shape.crank + u * shape.coupler - shape.follower_pivot;
+        let length = follower.norm();
+        (length > 0.0).then(|| [follower / length, -u])
+    };
+    let positions: Option<Positions> = start.positions.iter().map(position).collect();
+    let frame = space.offset(&start.design) + std::f64::consts::PI;
+    made(problem, start.setting, &exchanged, frame, positions?)
+}
+
+/// Returns whether all positions of a start have one assembly.
+fn is_on_one_branch(problem: &Problem, start: &Start) -> bool {
+    let Some(shape) = problem.space(start.setting.side).shape(&start.design) else { return false };
+    let mut assemblies = start.positions.iter().map(|[e, u]| assembly_of(&shape, *e, *u));
+    let first = assemblies.next();
+    assemblies.all(|assembly| Some(assembly) == first)
+}

@@ -1,0 +1,265 @@
+//! The task as data: a list of targets, written as `path` or as `motion`.
+//!
+//! A target says where the coupler point is to be and, in a motion, how the body is to lie there; the crank angles are
+//! given or free. Files and records call a list without body angles `path` and one with them `motion`.
+
+use crate::task::resampling::{resample, smooth};
+use crate::task::{AngleOffset, Body, Task, TaskError, TaskOptions, Timing};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// The task: a list of targets.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Tables", into = "Tables")]
+pub struct TaskSpec {
+    /// The place of the coupler point at each target; in a motion, of the body's origin.
+    pub points: Vec<[f64; 2]>,
+    /// Whether the target is a closed curve.
+    pub closed: bool,
+    /// One positive weight a target; they enter the objective only.
+    pub weight: Option<Vec<f64>>,
+    /// The largest error of the place accepted, one a target.
+    pub tolerance: Option<Vec<f64>>,
+    /// Prescribed timing; absent: free.
+    pub timing: Option<TimingSpec>,
+    /// The points before they were smoothed or resampled; absent where `points` are what was given.
+    pub raw: Option<RawPoints>,
+    /// The angles of a body; absent: the places alone are wanted.
+    pub body: Option<BodySpec>,
+}
+
+/// The angles of a body at the targets of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodySpec {
+    /// The angle of the body at each target, degrees from the x axis, counter-clockwise positive; `None`: only the place
+    /// counts there.
+    pub angle_deg: Vec<Option<f64>>,
+    /// A length: an angle error of one radian counts like an error of the place of this length.
+    pub angle_weight: f64,
+    /// The largest error of the angle accepted, degrees, one a target.
+    pub tolerance_deg: Option<Vec<f64>>,
+}
+
+/// Points as they were digitised, with the smoothing and resampling that made the target's points of them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RawPoints {
+    /// As they were given.
+    pub points: Vec<[f64; 2]>,
+    /// The standard deviation of the smoothing, a length along the path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smooth: Option<f64>,
+    /// The number of points taken evenly along the path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<usize>,
+}
+
+impl RawPoints {
+    /// Returns the target's points: smoothed, then resampled.
+    pub fn target(&self, closed: bool) -> Vec<[f64; 2]> {
+        let smoothed = match self.smooth {
+            Some(deviation) => smooth(&self.points, closed, deviation),
+            None => self.points.clone(),
+        };
+        match self.samples {
+            Some(count) => resample(&smoothed, closed, count),
+            None => smoothed,
+        }
+    }
+}
+
+/// Prescribed crank angles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TimingSpec {
+    /// One a target, degrees, counter-clockwise positive.
+    pub crank_deg: Vec<f64>,
+    /// Their reference direction.
+    pub offset: AngleOffset,
+}
+
+impl TaskSpec {
+    /// Returns a path through these points with free timing.
+    pub fn path(points: Vec<[f64; 2]>, closed: bool) -> TaskSpec {
+        TaskSpec { points, closed, ..TaskSpec::default() }
+    }
+
+    /// Returns the task, checked.
+    ///
+    /// # Errors
+    /// As [`Task::new`].
+    pub fn to_task(&self) -> Result<Task, TaskError> {
+        let timing = match &self.timing {
+            None => Timing::Free,
+            Some(t) => Timing::Prescribed {
+                crank_angles: t.crank_deg.iter().map(|d| d.to_radians()).collect(),
+                offset: t.offset,
+            },
+        };
+        let radians = |degrees: &f64| degrees.to_radians();
+        let options = TaskOptions {
+            weights: self.weight.clone(),
+            tolerances: self.tolerance.clone(),
+            closed: self.closed,
+            body: self.body.as_ref().map(|body| Body {
+                angles: body.angle_deg.iter().map(|angle| angle.as_ref().map(radians)).collect(),
+                angle_weight: body.angle_weight,
+                tolerances: body.tolerance_deg.as_ref().map(|list| list.iter().map(radians).collect()),
+            }),
+        };
+        Task::new(self.points.clone(), timing, options)
+    }
+
+    /// Returns the name of its table in a file: `task.path` or `task.motion`.
+    pub fn table(&self) -> &'static str {
+        if self.body.is_some() { "task.motion" } else { "task.path" }
+    }
+
+    /// Returns the key of its list of targets in a file: `task.path.points` or `task.motion.poses`.
+    pub fn list_key(&self) -> &'static str {
+        if self.body.is_some() { "task.motion.poses" } else { "task.path.points" }
+    }
+}
+
+/// The serialised form of a task: one table, named by its kind.
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(rename = "TaskSpec")]
+enum Tables {
+    /// A path to trace.
+    Path(PathTable),
+    /// Poses that a body is to pass.
+    Motion(MotionTable),
+}
+
+/// A path: points with their weights, tolerances and crank angles.
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "PathSpec")]
+struct PathTable {
+    /// The target points.
+    points: Vec<[f64; 2]>,
+    /// Whether the target is a closed curve.
+    closed: bool,
+    /// One positive weight a point; they enter the objective only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    weight: Option<Vec<f64>>,
+    /// The largest error accepted, one a point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    tolerance: Option<Vec<f64>>,
+    /// Prescribed timing; absent: free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    timing: Option<TimingSpec>,
+    /// The points before they were smoothed or resampled; absent where `points` are what was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    raw: Option<RawPoints>,
+}
+
+/// A motion: poses with their weights, tolerances and crank angles.
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "MotionSpec")]
+struct MotionTable {
+    /// The poses, each [x, y, angle in degrees], or [x, y] where only the place counts.
+    poses: Vec<PoseRow>,
+    /// Whether the motion returns to the first pose.
+    closed: bool,
+    /// A length: an angle error of one radian counts like an error of the place of this length.
+    angle_weight: f64,
+    /// One positive weight a pose; they enter the objective only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    weight: Option<Vec<f64>>,
+    /// The largest error of the place accepted, one a pose.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    tolerance: Option<Vec<f64>>,
+    /// The largest error of the angle accepted, degrees, one a pose.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    tolerance_deg: Option<Vec<f64>>,
+    /// Prescribed timing; absent: free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    timing: Option<TimingSpec>,
+}
+
+/// A pose as a row of two or three numbers.
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum PoseRow {
+    /// x, y and the angle in degrees.
+    Pose([f64; 3]),
+    /// x and y: only the place counts.
+    Place([f64; 2]),
+}
+
+impl From<Tables> for TaskSpec {
+    fn from(tables: Tables) -> TaskSpec {
+        match tables {
+            Tables::Path(PathTable { points, closed, weight, tolerance, timing, raw }) => {
+                TaskSpec { points, closed, weight, tolerance, timing, raw, body: None }
+            }
+            Tables::Motion(motion) => {
+                let split = |row: &PoseRow| match *row {
+                    PoseRow::Pose([x, y, angle]) => ([x, y], Some(angle)),
+                    PoseRow::Place(place) => (place, None),
+                };
+                let (points, angle_deg) = motion.poses.iter().map(split).unzip();
+                let MotionTable { closed, angle_weight, weight, tolerance, tolerance_deg, timing, .. } =
+                    motion;
+                let body = Some(BodySpec { angle_deg, angle_weight, tolerance_deg });
+                TaskSpec { points, closed, weight, tolerance, timing, raw: None, body }
+            }
+        }
+    }
+}
+
+impl From<TaskSpec> for Tables {
+    fn from(spec: TaskSpec) -> Tables {
+        let TaskSpec { points, closed, weight, tolerance, timing, raw, body } = spec;
+        match body {
+            None => Tables::Path(PathTable { points, closed, weight, tolerance, timing, raw }),
+            Some(BodySpec { angle_deg, angle_weight, tolerance_deg }) => {
+                let row = |([x, y], angle): ([f64; 2], Option<f64>)| match angle {
+                    Some(angle) => PoseRow::Pose([x, y, angle]),
+                    None => PoseRow::Place([x, y]),
+                };
+                let poses = points.into_iter().zip(angle_deg).map(row).collect();
+                Tables::Motion(MotionTable {
+                    poses,
+                    closed,
+                    angle_weight,
+                    weight,
+                    tolerance,
+                    tolerance_deg,
+                    timing,
+                })
+            }
+        }
+    }
+}
+
+impl JsonSchema for TaskSpec {
+    fn schema_name() -> Cow<'static, str> {
+        Tables::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Tables::json_schema(generator)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_written_as_ever_and_a_motion_as_poses() {
+        let path = TaskSpec::path(vec![[0.0, 1.0], [2.0, 3.0]], true);
+        let text = serde_json::to_string(&path).expect("JSON");
+        assert_eq!(text, r#"{"path":{"points":[[0.0,1.0],[2.0,3.0]],"closed":true}}"#);
+        assert_eq!(serde_json::from_str::<TaskSpec>(&text).expect("a task"), path);
+        let body = BodySpec { angle_deg: vec![Some(5.0), None], angle_weight: 2.5, tolerance_deg: None };
+        let motion = TaskSpec { body: Some(body), closed: false, ..path };
+        let text = serde_json::to_string(&motion).expect("JSON");
+        assert_eq!(
+            text,
+            r#"{"motion":{"poses":[[0.0,1.0,5.0],[2.0,3.0]],"closed":false,"angle_weight":2.5}}"#
+        );
+        assert_eq!(serde_json::from_str::<TaskSpec>(&text).expect("a task"), motion);
+    }
+}
