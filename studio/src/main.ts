@@ -29,7 +29,7 @@ import { MOST_PINNED, Showing } from "./showing";
 import { SizeChip } from "./size";
 import { namesOfAsked, Stays } from "./stays";
 import { type How, Store } from "./store";
-import { inWords, isExact, Strip } from "./strip";
+import { inWords, isExact, MANY, Strip } from "./strip";
 import { SureChip } from "./sure";
 import type { Hand, Tool } from "./surface";
 import { Table } from "./table";
@@ -74,6 +74,8 @@ class Page {
   private begunWith = "null";
   /** How many times as long as at first all lengths have been made. */
   private lengths = 1;
+  /** The time until which many cards wait for a hand that moves. */
+  private cardsWait = 0;
   private filling: ReturnType<typeof setTimeout> | undefined;
   private looking: ReturnType<typeof setTimeout> | undefined;
   /** What the page has written among the coordinates; anything else is the user's, until it is taken. */
@@ -478,7 +480,10 @@ class Page {
   private answered(answer: Answer) {
     if (this.showing.hear(answer, this.store.version).chosenIsGone)
       this.desk.say("The linkage that was chosen is not among these any more: the best one is shown.");
-    this.draw();
+    const now = performance.now();
+    const waiting = answer.doing === "following" && answer.candidates.length > MANY && now < this.cardsWait;
+    if (!waiting) this.cardsWait = now + CONTROLS_WAIT;
+    this.draw(waiting);
     const best = this.showing.answer?.candidates[0];
     const near =
       best && (best.ability || isExact(best))
@@ -497,8 +502,8 @@ class Page {
     this.said.tell(status, answer.doing === "searching" ? answer.progress : undefined);
   }
 
-  private draw() {
-    byId("nothing").hidden = this.scene.draw() > 0;
+  private draw(waiting = false) {
+    byId("nothing").hidden = this.scene.draw(waiting) > 0;
     byId("compare").hidden = this.showing.pinned.length === 0;
     const { answer } = this.showing;
     const chosen = this.scene.chosen();

@@ -91,13 +91,14 @@ export class Scene {
     return (this.moving[this.place]?.box() as Box | undefined) ?? null;
   }
 
-  /** Draws board and cards; gives how many cards there are. */
-  draw(): number {
+  /** Draws the board, and the cards unless they wait; gives how many cards there are. */
+  draw(waiting = false): number {
     const { board, byHand, showing, strip, task } = this.parts;
     const all = showing.all(task());
     const inHand = byHand.solution();
     this.moving = [...all, ...(inHand ? [inHand] : [])].map(({ shown, task }) => movingOf(shown, task.points));
     this.drawBoard();
+    if (waiting) return all.length;
     const cards = this.moving.slice(0, all.length);
     const place = inHand ? -1 : showing.place();
     strip.show(cards, all, showing.candidates().length, place, showing.own, task(), board.isWalker);

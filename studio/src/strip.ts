@@ -23,7 +23,7 @@ import {
 
 const [W, H] = [150, 96];
 /** Of more than so many only the pictures in sight are drawn. */
-const MANY = 12;
+export const MANY = 12;
 
 export const inWords = (shown: Shown) =>
   shown.accepted
