@@ -35,8 +35,8 @@ export class SizeChip {
     });
   }
 
-  /** Stands where the fewest of these pixels lie beneath, `marks` before `links`:
-   * where it stands, if none is better; at the top with nothing drawn. */
+  /** Stands where the fewest of these pixels lie beneath, `marks` before `links`: in the corner where that is free, else
+   * where it stands, if no place is better. */
   clearOf(marks: Point[], links: Point[]) {
     const { offsetLeft, offsetTop, offsetWidth: wide, offsetHeight: high } = this.node;
     const { clientWidth, clientHeight } = this.place;
@@ -45,7 +45,8 @@ export class SizeChip {
         .length;
     const covered = (at: Point) => HEAVY * within(marks, at, ROOM) + within(links, at, ROOM / 2);
     const isDrawn = marks.length + links.length > 0 && wide > 0;
-    let best: Point = isDrawn ? [offsetLeft, offsetTop] : [RIM, RIM];
+    const home: Point = [RIM, RIM];
+    let best = isDrawn && covered(home) > 0 ? ([offsetLeft, offsetTop] as Point) : home;
     let least = isDrawn ? covered(best) : 0;
     const right = clientWidth - wide - RIM;
     for (const left of [RIM, right, right / 2])
