@@ -105,6 +105,13 @@ pub mod motion {
     pub const QUIET_BATCHES: u64 = 8;
     /// Number of candidates kept while searching.
     pub const KEPT: usize = 200;
+    /// Families of exact answers: dyads of a round, and batches.
+    pub const FAMILY_PINS: usize = 40;
+    pub const FAMILY_BATCHES: u64 = 6;
+    /// The most exact answers that are led to better transmission angles; the first and the least step, degrees.
+    pub const CLIMBED: usize = 8;
+    pub const CLIMB_DEG: f64 = 8.0;
+    pub const CLIMB_LEAST_DEG: f64 = 0.01;
 }
 
 /// Prescribed timing by variable projection, in its reduced form; no benchmark chooses them.

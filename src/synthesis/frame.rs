@@ -440,7 +440,7 @@ mod tests {
             let assembly = if case % 3 == 0 { AssemblyMode::Minus } else { AssemblyMode::Plus };
             let (deg, t1): (Vec<f64>, Vec<AssemblyMode>) =
                 (0..12).map(|j| (from + way * 29.0 * f64::from(j), assembly)).unzip();
-            let own = assess_on_curve(&problem, &linkage.with_assembly(assembly), &deg, &t1, None)
+            let own = assess_on_curve(&problem, &linkage.with_assembly(assembly), (&deg, &t1), None, None)
                 .expect("it closes");
             let frame = Frame::of(&problem);
             let image = frame.exact(&problem).expect("an image");
@@ -484,7 +484,8 @@ mod tests {
     fn the_least_rotation_is_that_of_a_comparison_of_all() {
         let draws = &mut stream(3, 0);
         for n in 1..40 {
-            let items: Vec<Item> = (0..n).map(|_| [below(draws, 2) as f64, 0.0, 1.0, 1.0]).collect();
+            let items: Vec<Item> =
+                (0..n).map(|_| [below(draws, 2) as f64, 0.0, 1.0, 1.0, NO_ANGLE, 1.0]).collect();
             let rotated = |first: usize| {
                 let mut items = items.clone();
                 items.rotate_left(first);

@@ -47,7 +47,7 @@ struct Allowed {
 impl Allowed {
     fn of(problem: &Problem, best: &Candidate) -> Allowed {
         let within = problem.spec().solve.picks_within;
-        if problem.task().tolerances().is_some() {
+        if problem.task().has_tolerances() {
             return Allowed { objective: f64::INFINITY, enough: 0.0 };
         }
         let least = best.error.objective.max(exact_objective(problem));

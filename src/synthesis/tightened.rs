@@ -95,6 +95,9 @@ pub(super) fn searched_anew(
     spec.solve.method = Method::LeastSquares;
     // Tolerances and the largest deviation are left to the fits that follow.
     spec.task.tolerance = None;
+    if let Some(body) = &mut spec.task.body {
+        body.tolerance_deg = None;
+    }
     spec.solve.objective = Objective::SumOfSquares;
     spec.solve.candidates = answers;
     let tight = Problem::new(spec).ok()?;

@@ -15,6 +15,7 @@ mod derivatives;
 mod deviation;
 mod invariance;
 mod ladder;
+mod motion;
 mod projection;
 mod properties;
 #[path = "../common/random.rs"]

@@ -89,7 +89,10 @@ fn direct(
         AngleOffset::Ground => linkage.ground_angle(),
     };
     let angles: Vec<f64> = crank_angles.iter().map(|psi| base + direction * psi).collect();
-    problem.task().errors(&linkage, &angles, &vec![assembly; angles.len()]).map_or(f64::NAN, |e| e.objective)
+    problem
+        .task()
+        .errors(&linkage, &angles, &vec![assembly; angles.len()], None)
+        .map_or(f64::NAN, |e| e.objective)
 }
 
 const BOTH: [AssemblyMode; 2] = [AssemblyMode::Plus, AssemblyMode::Minus];
@@ -161,7 +164,11 @@ fn no_neighbouring_coupler_point_or_pivot_fits_better() {
         let cost_of = |shape: &linkwright::internals::task::forms::design_space::Shape, offset: f64| {
             let linkage = shape.linkage(AssemblyMode::Minus).expect("it is one");
             let angles: Vec<f64> = crank_angles.iter().map(|psi| offset + psi).collect();
-            problem.task().errors(&linkage, &angles, &[AssemblyMode::Minus; 7]).expect("closed").objective
+            problem
+                .task()
+                .errors(&linkage, &angles, &[AssemblyMode::Minus; 7], None)
+                .expect("closed")
+                .objective
         };
         let best = cost_of(&solution.shape, solution.offset);
         let step = 1e-3;

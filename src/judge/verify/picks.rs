@@ -89,7 +89,7 @@ impl Comparison<'_> {
 fn greatest_objective(problem: &Problem, closest: &Candidate) -> Option<f64> {
     let solve = &problem.spec().solve;
     let (within, least) = (solve.picks_within, closest.error.objective.max(exact_objective(problem)));
-    problem.task().tolerances().is_none().then_some(match solve.objective {
+    (!problem.task().has_tolerances()).then_some(match solve.objective {
         Objective::SumOfSquares => within * within * least,
         Objective::MaxDeviation => within * least,
     })

@@ -5,12 +5,16 @@
 //! best `LONG` of them to convergence, and has the ends judged, driven from either side. Rounds run in parallel in batches
 //! and are read in their order: the number of threads changes nothing but the time. The search ends when enough rounds
 //! have reached the best answer and as many distinct answers as were asked for are known, or no new one has come for
-//! `QUIET_BATCHES` batches; an exact answer needs no second hit.
+//! `QUIET_BATCHES` batches; an exact answer needs no second hit. Where exact answers form a family ([`family`]), several
+//! batches are searched and the best answers led to better transmission angles.
 
+mod family;
 mod starts;
 
 use super::belief::SAME_OPTIMUM;
-use super::constants::motion::{BATCH, HITS, KEPT, LEAST_BATCHES, LONG, QUIET_BATCHES, SHORT};
+use super::constants::motion::{
+    BATCH, FAMILY_BATCHES, HITS, KEPT, LEAST_BATCHES, LONG, QUIET_BATCHES, SHORT,
+};
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
 use super::multistart::{LONG_FIT, RoundOutcome, SHORT_FIT, Spender, by_merit, judged, promise};
 use super::polish::promising;
@@ -20,11 +24,14 @@ use crate::judge::rank::{exact_cost, searched, sort};
 use crate::numbers::arithmetic::streams::stream;
 use crate::record::{Candidate, Repeats};
 use crate::task::forms::start::Start;
-use starts::{DyadStarts, swapped};
+use family::{climb, freedom};
+use starts::{DyadStarts, least_sine, swapped};
 
 struct Motion<'a> {
     starts: DyadStarts<'a>,
     exact: f64,
+    /// The number of free parameters that are left when all targets are met.
+    freedom: usize,
     at: RoundsState,
 }
 
@@ -38,10 +45,15 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
     let mut search = Motion {
         starts: DyadStarts::new(problem),
         exact: exact_cost(problem),
+        freedom: freedom(problem),
         at: earlier.unwrap_or_default(),
     };
     let reason = drive(context, allowance, &mut search);
-    let at = search.at;
+    let mut at = search.at;
+    if search.freedom > 0 {
+        let left = allowance.limit.saturating_sub(at.evaluations.objective);
+        at.evaluations += context.cost(climb(context, &mut at.found, left));
+    }
     let hits = at.hits as u64;
     Some(Found {
         repeats: at.best.is_some().then(|| Repeats::new(at.batch * BATCH, hits, hits)),
@@ -67,7 +79,12 @@ impl Motion<'_> {
             }
             outcome.draws += 1;
             spender.spend(problem, 1);
-            screened.extend(promise(problem, &mut start).map(|promise| (promise, start)));
+            let promise = promise(problem, &mut start).map(|promise| {
+                // Exact starts are compared by how they transmit.
+                let is_exact = self.freedom > 0 && promise <= self.exact;
+                if is_exact { -1.0 - least_sine(problem, &start) } else { promise }
+            });
+            screened.extend(promise.map(|promise| (promise, start)));
         }
         // A round without a start counts as one draw, so that the search comes to its end.
         outcome.draws = outcome.draws.max(1);
@@ -76,7 +93,10 @@ impl Motion<'_> {
         for (_, start) in screened {
             fitted.extend(spender.fit(problem, start, SHORT_FIT, u64::MAX));
         }
-        by_merit(&mut fitted, LONG);
+        // Exact ends are different answers, of which the best transmitting is wanted.
+        by_merit(&mut fitted, SHORT);
+        let exact = fitted.iter().take_while(|(merit, _)| *merit <= self.exact).count();
+        fitted.truncate(LONG.max(exact));
         let judging = context.judging();
         for (_, start) in fitted {
             let Some((_, end)) = spender.fit_as_required(problem, start, LONG_FIT) else { continue };
@@ -156,6 +176,9 @@ impl Strategy for Motion<'_> {
         let at = &mut self.at;
         let wanted = context.problem.spec().solve.candidates;
         let is_exact = at.best.as_ref().is_some_and(|best| searched(context.problem, best) <= self.exact);
+        if self.freedom > 0 && is_exact && at.batch < FAMILY_BATCHES {
+            return false;
+        }
         let is_believed = at.hits >= HITS && at.batch >= LEAST_BATCHES;
         (is_believed || is_exact && at.hits > 0)
             && are_enough(context, &at.found, wanted, (&mut at.known, &mut at.quiet), QUIET_BATCHES)

@@ -4,10 +4,11 @@
 //! minima of the map of circle errors, and dyads through a few sets of five poses. Later rounds draw further sets of five,
 //! and pins at random, each with its best circle. Every two dyads are a linkage, either of them the crank.
 
+use super::family::freedom;
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, CouplerSide, Dyad, Pose};
-use crate::numbers::arithmetic::streams::{Stream, uniform};
-use crate::synthesis::constants::motion::{GRID, MINIMA, PINS, REACH, SETS_FIRST, SETS_LATER};
+use crate::numbers::arithmetic::streams::{Stream, below, uniform};
+use crate::synthesis::constants::motion::{FAMILY_PINS, GRID, MINIMA, PINS, REACH, SETS_FIRST, SETS_LATER};
 use crate::synthesis::dyads::{
     Pair, circle_fit, circle_minima, nearest_in_kernel, pair, through_four_curve, through_random_five,
     through_three_from_pin,
@@ -18,12 +19,19 @@ use crate::task::forms::start::Start;
 use crate::task::forms::torus::Positions;
 use crate::task::{Problem, Setting};
 
+/// The distance of pins and pivots, in sizes of the target, within which two dyads are one.
+const SAME_PIN: f64 = 1e-6;
+/// Places on the curve of the dyads through four poses.
+const CURVE: usize = 400;
+
 /// A generator of starts for the poses of a problem.
 pub(super) struct DyadStarts<'a> {
     problem: &'a Problem,
     /// The poses of the targets that give an angle, with their weights.
     poses: Vec<Pose>,
     weights: Vec<f64>,
+    /// Whether the exact answers form a family.
+    family: bool,
 }
 
 impl<'a> DyadStarts<'a> {
@@ -34,7 +42,7 @@ impl<'a> DyadStarts<'a> {
         let (poses, weights) = given
             .filter_map(|((point, angle), weight)| Some((Pose::new(*point, (*angle)?), *weight)))
             .unzip();
-        DyadStarts { problem, poses, weights }
+        DyadStarts { problem, poses, weights, family: freedom(problem) > 0 }
     }
 
     /// Returns the dyads of a round: those that the poses suggest in the first one, else drawn ones.
@@ -50,18 +58,35 @@ impl<'a> DyadStarts<'a> {
         for _ in 0..if first { SETS_FIRST } else { SETS_LATER } {
             dyads.extend(through_random_five(poses, stream));
         }
-        if first && poses.len() == 4 {
-            let four: [Pose; 4] = std::array::from_fn(|k| poses[k]);
-            dyads.extend(through_four_curve(&four, GRID));
-        }
-        while dyads.len() < PINS {
+        dyads.extend(self.on_the_curve(stream));
+        let least = if self.family { FAMILY_PINS } else { PINS };
+        while dyads.len() < least {
             match self.drawn(stream) {
                 Some(dyad) => dyads.push(dyad),
                 None => break,
             }
         }
-        dyads.retain(|dyad| matches!(dyad, Dyad::RR { .. }));
-        dyads
+        let near = SAME_PIN * self.problem.task().size();
+        let mut distinct: Vec<Dyad> = Vec::with_capacity(dyads.len());
+        for dyad in dyads {
+            let Dyad::RR { pin, pivot, .. } = dyad else { continue };
+            let is_same = |other: &Dyad| match other {
+                Dyad::RR { pin: p, pivot: g, .. } => (p - pin).norm() < near && (g - pivot).norm() < near,
+                Dyad::PR { .. } | Dyad::RP { .. } => false,
+            };
+            if !distinct.iter().any(is_same) {
+                distinct.push(dyad);
+            }
+        }
+        distinct
+    }
+
+    /// Draws dyads from the curve of those through four poses; none for another number of poses.
+    fn on_the_curve(&self, stream: &mut Stream) -> Vec<Dyad> {
+        let Ok(four) = <[Pose; 4]>::try_from(self.poses.as_slice()) else { return Vec::new() };
+        let all = through_four_curve(&four, CURVE);
+        let most = if all.is_empty() { 0 } else { FAMILY_PINS };
+        (0..most).map(|_| all[below(stream, all.len())]).collect()
     }
 
     /// Draws a pin of the body, with the circle that it stays nearest to.
@@ -70,6 +95,18 @@ impl<'a> DyadStarts<'a> {
         for _ in 0..PINS {
             let pin = Complex::new(uniform(stream, -reach, reach), uniform(stream, -reach, reach));
             let dyad = match *self.poses.as_slice() {
+                [] => None,
+                [one] => {
+                    let to = Complex::new(uniform(stream, -reach, reach), uniform(stream, -reach, reach));
+                    Some(Dyad::RR { pin, pivot: one.at(pin) + to, length: to.norm() })
+                }
+                [one, other] => {
+                    // Any point of the perpendicular bisector is a pivot.
+                    let (from, to) = (one.at(pin), other.at(pin));
+                    let along = Complex::new(0.5, uniform(stream, -REACH, REACH));
+                    let pivot = from + (to - from) * along;
+                    Some(Dyad::RR { pin, pivot, length: (from - pivot).norm() })
+                }
                 [one, second, third] => through_three_from_pin(&[one, second, third], pin),
                 _ => circle_fit(&self.poses, pin, Some(&self.weights)).map(|fit| fit.dyad(pin)),
             };
@@ -179,6 +216,18 @@ pub(super) fn swapped(problem: &Problem, start: &Start) -> Option<Start> {
     let positions: Option<Positions> = start.positions.iter().map(position).collect();
     let frame = space.offset(&start.design) + std::f64::consts::PI;
     made(problem, start.setting, &exchanged, frame, positions?)
+}
+
+/// Returns the least |sin mu| over the positions of a start, mu the angle between coupler and follower; negative if they are
+/// not on one branch.
+pub(super) fn least_sine(problem: &Problem, start: &Start) -> f64 {
+    let Some(shape) = problem.space(start.setting.side).shape(&start.design) else { return -1.0 };
+    let sine = |[e, u]: &[Complex; 2]| {
+        let follower = shape.crank_pivot + e * shape.crank + u * shape.coupler - shape.follower_pivot;
+        ((follower.conj() * u).im / follower.norm()).abs()
+    };
+    let least = start.positions.iter().map(sine).fold(f64::INFINITY, f64::min);
+    if is_on_one_branch(problem, start) { least } else { least - 2.0 }
 }
 
 /// Returns whether all positions of a start have one assembly.

@@ -72,7 +72,7 @@ pub fn candidate(
     crank_angles: &[f64],
     t1: &[AssemblyMode],
 ) -> Candidate {
-    let error = task.errors(&linkage, crank_angles, t1).expect("closes at every point");
+    let error = task.errors(&linkage, crank_angles, t1, None).expect("closes at every point");
     let to_curve = distances_to_curve(task.points(), &linkage, crank_angles[0], t1[0]).expect("has a curve");
     let verdict = judge(task, &linkage, crank_angles, t1);
     let mobility = linkage.mobility();
@@ -87,6 +87,7 @@ pub fn candidate(
         linkage,
         crank_deg: crank_angles.iter().map(|a| a.to_degrees()).collect(),
         t1_at: t1.to_vec(),
+        frame_deg: None,
         error: ErrorRecord {
             objective: error.objective,
             sum_sq: error.sum_sq,
@@ -99,6 +100,7 @@ pub fn candidate(
                 rms: rms(to_curve.sum_sq, task.len()),
                 max: to_curve.max,
             },
+            angle: None,
             to_raw: None,
         },
         linkage_type: mobility.linkage_type.expect("can be joined"),

@@ -1,0 +1,68 @@
+//! Families of exact answers: fewer equations than free parameters, so that among all linkages that meet the targets the
+//! best transmitting one is wanted.
+//!
+//! A pose gives three equations and a place two, and each target takes one of them for its own crank angle. Exact answers
+//! that the rounds have found are led along their family: the least transmission angle asked for is raised step by step
+//! and the linkage fitted again, for as long as it stays exact; then the step is halved.
+
+use crate::judge::rank::{chosen, exact_cost, searched, sort};
+use crate::record::{Axis, Candidate};
+use crate::synthesis::Context;
+use crate::synthesis::constants::motion::{CLIMB_DEG, CLIMB_LEAST_DEG, CLIMBED};
+use crate::synthesis::multistart::MIDDLE_FIT;
+use crate::synthesis::tightened::{Tighter, fitted};
+use crate::task::Problem;
+use rayon::prelude::*;
+
+/// Returns the number of free parameters that are left when all targets are met; 0 if there are equations enough.
+pub(super) fn freedom(problem: &Problem) -> usize {
+    let task = problem.task();
+    let angles = task.body().map_or(&[][..], |body| &body.angles);
+    let equations = task.len() + angles.iter().flatten().count();
+    let space = problem.space(problem.sides()[0]);
+    space.bounds().iter().filter(|(low, high)| low < high).count().saturating_sub(equations)
+}
+
+/// Leads the best exact candidates to better transmission angles, with at most `left` evaluations; returns the evaluations
+/// used.
+pub(super) fn climb(context: Context<'_>, found: &mut Vec<Candidate>, left: u64) -> u64 {
+    let problem = context.problem;
+    let exact = exact_cost(problem);
+    let is_exact = |candidate: &Candidate| candidate.accepted && searched(problem, candidate) <= exact;
+    let known: Vec<Candidate> = found.iter().filter(|candidate| is_exact(candidate)).cloned().collect();
+    let starts: Vec<&Candidate> = chosen(problem, &known, CLIMBED).into_iter().map(|i| &known[i]).collect();
+    let each = left / starts.len().max(1) as u64;
+    let ends: Vec<(Vec<Candidate>, u64)> = starts
+        .into_par_iter()
+        .map(|start| {
+            let (mut met, mut used, mut step) = (Vec::new(), 0, CLIMB_DEG);
+            let mut at = start.clone();
+            while step >= CLIMB_LEAST_DEG && used < each && !context.stopped() {
+                let worst = at.transmission_deg.worst;
+                let limits = Tighter::default().with(Axis::Transmission, (worst + step).min(90.0));
+                let Some(tight) = limits.of(problem) else { break };
+                let fit = fitted(context, &tight, &at, MIDDLE_FIT, (exact, each - used));
+                used += fit.evaluations.max(1);
+                match fit
+                    .candidate
+                    .filter(|end| is_exact(end) && end.transmission_deg.worst > worst + 0.5 * step)
+                {
+                    Some(better) => {
+                        met.push(better.clone());
+                        at = better;
+                    }
+                    None => step *= 0.5,
+                }
+            }
+            (met, used)
+        })
+        .collect();
+    let mut used = 0;
+    for (met, evaluations) in ends {
+        used += evaluations;
+        // The last of them is the best.
+        found.extend(met.into_iter().last());
+    }
+    sort(problem, found);
+    used
+}

@@ -1,0 +1,364 @@
+//! Poses of a body: what the search finds, and that every figure of a record is that of the linkage.
+
+use crate::common::parse;
+use crate::random::{ROCKING, TURNING, linkage, one_of, trace};
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::mechanism::Complex;
+use linkwright::internals::numbers::arithmetic::streams::{Stream, below, normal, stream, uniform};
+use linkwright::internals::numbers::optimise::levenberg_marquardt::{
+    BlockLeastSquares, LmOptions, derivative_error, solve,
+};
+use linkwright::internals::task::Setting;
+use linkwright::internals::task::forms::design_space::Shape;
+use linkwright::internals::task::forms::torus::MotionFit;
+use linkwright::internals::task::similarity::{Numbering, Similarity};
+use linkwright::spec::ProblemSpec;
+use linkwright::{Candidate, Context, CouplerSide, FourBar, Job, Problem, Record, run};
+use std::f64::consts::{PI, TAU};
+use std::sync::atomic::AtomicBool;
+
+fn solved(spec: ProblemSpec) -> Record {
+    let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+    run(&Job::new("motion", spec), &context).expect("a run").record
+}
+
+fn wrapped(angle: f64) -> f64 {
+    angle - TAU * (angle / TAU).round()
+}
+
+/// Poses of a body on a coupler, with the linkage that takes it through them and the body's frame.
+struct Taken {
+    linkage: FourBar,
+    positions: Vec<(f64, linkwright::AssemblyMode)>,
+    frame: f64,
+    /// Places and angles, radians.
+    poses: Vec<(Complex, f64)>,
+}
+
+/// Draws a linkage of any type and `n` poses on one of its branches; noise in parts of the size and of a radian.
+fn taken(draws: &mut Stream, n: usize, noise: f64) -> Taken {
+    loop {
+        let turning = below(draws, 2) == 0;
+        let of = if turning { one_of(draws, &TURNING) } else { one_of(draws, &ROCKING) };
+        let linkage = linkage(draws, of);
+        let span = if turning { uniform(draws, 2.0, 5.8) } else { uniform(draws, 0.8, 2.4) };
+        let Some(traced) = trace(draws, &linkage, n, Some(span)) else { continue };
+        let one_branch = traced.positions.iter().all(|(_, t)| *t == traced.positions[0].1);
+        let size = traced.size();
+        let frame = uniform(draws, -PI, PI);
+        let coupler = |(angle, t): &(f64, linkwright::AssemblyMode)| {
+            let joints = traced.linkage.position_with(*angle, *t).joints().expect("it closes");
+            (joints.follower_pin - joints.crank_pin).arg()
+        };
+        if !one_branch || size < 0.05 * linkage.longest_link() || linkage.link_ratio() > 15.0 {
+            continue;
+        }
+        let mut pose = |(point, at): (&Complex, &(f64, linkwright::AssemblyMode))| {
+            let off = Complex::new(normal(draws, 0.0, noise * size), normal(draws, 0.0, noise * size));
+            (point + off, coupler(at) + frame + normal(draws, 0.0, noise))
+        };
+        let poses = traced.points.iter().zip(&traced.positions).map(&mut pose).collect();
+        return Taken { linkage: traced.linkage, positions: traced.positions.clone(), frame, poses };
+    }
+}
+
+/// A problem of these poses with bounds that leave room for any linkage of the tests.
+fn problem(poses: &[(Complex, f64)], lines: &str) -> ProblemSpec {
+    let rows: Vec<[f64; 3]> = poses.iter().map(|(p, angle)| [p.re, p.im, angle.to_degrees()]).collect();
+    parse(&format!("format = 1\n[task.motion]\nposes = {rows:?}\n{lines}")).spec
+}
+
+/// Wide bounds around the first pose, in units of `far`.
+fn wide(at: Complex, far: f64) -> String {
+    let (x, y) = ([at.re - far, at.re + far], [at.im - far, at.im + far]);
+    let l = [1e-3 * far, far];
+    let o = [-far, far];
+    format!(
+        "[design]\nA = [{x:?}, {y:?}]\nB = [{x:?}, {y:?}]\na = {l:?}\nb = {l:?}\nc = {l:?}\nground = {l:?}\n\
+         coupler_x = {o:?}\ncoupler_y = {o:?}\n"
+    )
+}
+
+const ALONE: &str = "[solve]\ncandidates = 1\nadvice = false\n";
+
+/// The errors of a candidate by circles that meet, without any of the library's kinematics.
+fn recomputed(candidate: &Candidate, spec: &ProblemSpec) -> (f64, f64, f64) {
+    let l = &candidate.linkage;
+    let (a, b) = (l.crank_pivot(), l.follower_pivot());
+    let frame = candidate.frame_deg.expect("a motion has a frame").to_radians();
+    let body = spec.task.body.as_ref().expect("a motion");
+    let (mut places, mut angles, mut count) = (0.0, 0.0, 0);
+    for (j, target) in spec.task.points.iter().enumerate() {
+        let phi = candidate.crank_deg[j].to_radians();
+        let c = a + Complex::new(l.crank() * phi.cos(), l.crank() * phi.sin());
+        // D by the law of cosines at C.
+        let to_b = b - c;
+        let (s, q, r) = (to_b.norm(), l.coupler(), l.follower());
+        let at_c = ((q * q + s * s - r * r) / (2.0 * q * s)).clamp(-1.0, 1.0).acos();
+        let theta = to_b.arg() + candidate.t1_at[j].sign() * at_c;
+        let (d, e) = (l.crank_side(), l.follower_side());
+        let at_p = ((d * d + q * q - e * e) / (2.0 * d * q)).clamp(-1.0, 1.0).acos();
+        let side = if l.side() == CouplerSide::Plus { 1.0 } else { -1.0 };
+        let p = c + Complex::from_polar(d, theta + side * at_p);
+        places += (p - Complex::new(target[0], target[1])).norm_sqr();
+        if let Some(angle) = body.angle_deg[j] {
+            angles += wrapped(angle.to_radians() - theta - frame).powi(2);
+            count += 1;
+        }
+    }
+    let objective = places + body.angle_weight.powi(2) * angles;
+    (objective, (places / spec.task.points.len() as f64).sqrt(), (angles / f64::from(count)).sqrt())
+}
+
+/// Checks the figures of a record's candidates against [`recomputed`], and the record by `verify`.
+fn assert_true(record: &Record) {
+    let spec = &record.problem.resolved;
+    let size = spec.task.to_task().expect("a task").size();
+    for candidate in &record.candidates {
+        let (objective, rms, angle_rms) = recomputed(candidate, spec);
+        let error = &candidate.error;
+        let near = |one: f64, other: f64, scale: f64| (one - other).abs() <= 1e-7 * scale + 1e-9 * one.abs();
+        assert!(near(error.objective.sqrt(), objective.sqrt(), size), "{} {objective}", error.objective);
+        assert!(near(error.rms, rms, size), "{} {rms}", error.rms);
+        let of_angle = error.angle.expect("a motion");
+        assert!(near(of_angle.rms_deg, angle_rms.to_degrees(), 57.3), "{} {angle_rms}", of_angle.rms_deg);
+    }
+    assert_eq!(verify(record).expect("a record"), []);
+}
+
+/// The objective that a fit from the truth reaches: the linkage that the poses were taken from.
+fn from_the_truth(problem: &Problem, taken: &Taken) -> f64 {
+    let shape = Shape::from(&taken.linkage);
+    let position = |(angle, t): &(f64, linkwright::AssemblyMode)| {
+        let joints = taken.linkage.position_with(*angle, *t).joints().expect("it closes");
+        [Complex::from_polar(1.0, *angle), (joints.follower_pin - joints.crank_pin) / shape.coupler]
+    };
+    let positions = taken.positions.iter().map(position).collect();
+    let side = taken.linkage.side();
+    let setting = Setting { aim: None, assembly: taken.linkage.assembly(), direction: 1.0, side };
+    let design = problem.space(side).design(&shape, taken.frame);
+    let options = LmOptions {
+        max_steps: 400,
+        max_rounds: 14,
+        max_evaluations: 4000,
+        relative_reduction: 1e-13,
+        exact_cost: 0.0,
+        feasibility: 1e-9,
+        hopeless_cost: f64::INFINITY,
+    };
+    let fit = MotionFit::new(problem, setting).in_order(&design, &positions);
+    solve(&fit, design, positions, &options, &|| false).cost
+}
+
+#[test]
+fn poses_of_random_linkages_are_met_and_noisy_ones_fitted_as_well_as_from_the_truth() {
+    let draws = &mut stream(71, 0);
+    let (mut worse, mut refused) = (Vec::new(), 0);
+    let cases = 60;
+    for case in 0..cases {
+        let n = [6, 8, 12, 30][case % 4];
+        let noise = [0.0, 0.005, 0.02][case % 3];
+        let taken = taken(draws, n, noise);
+        let far = 12.0 * taken.linkage.longest_link().max(taken.linkage.crank_side());
+        let lines = wide(taken.poses[0].0, far) + "[require]\nlink_ratio_max = 200\n" + ALONE;
+        let spec = problem(&taken.poses, &lines);
+        let record = solved(spec.clone());
+        assert_true(&record);
+        let best = &record.candidates[0];
+        let checked = Problem::new(spec).expect("a problem");
+        let size = checked.task().size();
+        let truth = from_the_truth(&checked, &taken);
+        refused += usize::from(!best.accepted);
+        if noise == 0.0 {
+            if best.error.objective.sqrt() > 1e-9 * size {
+                worse.push((case, best.error.objective.sqrt() / size));
+            }
+        } else if best.error.objective > truth * (1.0 + 1e-6) {
+            worse.push((case, best.error.objective / truth));
+        }
+    }
+    println!("worse than from the truth: {worse:?}; refused: {refused}");
+    assert!(worse.len() * 50 <= cases, "{worse:?}");
+    assert!(refused * 20 <= cases, "{refused}");
+}
+
+#[test]
+fn derivatives_of_a_motion_agree_with_central_differences() {
+    let draws = &mut stream(72, 0);
+    let mut errors = Vec::new();
+    for _ in 0..40 {
+        let taken = taken(draws, 7, 0.02);
+        let spec = problem(
+            &taken.poses,
+            "[require]\ntype = [\"crank-rocker\"]\ntransmission_deg_min = 30\nfootprint_in = [-90, -90, 90, 90]\n",
+        );
+        let problem = Problem::new(spec).expect("a problem");
+        let shape = Shape::from(&taken.linkage);
+        let position = |(angle, t): &(f64, linkwright::AssemblyMode)| {
+            let joints = taken.linkage.position_with(*angle, *t).joints().expect("it closes");
+            [Complex::from_polar(1.0, *angle), (joints.follower_pin - joints.crank_pin) / shape.coupler]
+        };
+        let mut positions = taken.positions.iter().map(position).collect();
+        let side = taken.linkage.side();
+        let setting = Setting {
+            aim: Some(linkwright::LinkageType::CrankRocker),
+            assembly: taken.linkage.assembly(),
+            direction: 1.0,
+            side,
+        };
+        let fit = MotionFit::new(&problem, setting);
+        let design = problem.space(side).design(&shape, taken.frame + 0.1);
+        if !fit.settle(&design, &mut positions) {
+            continue;
+        }
+        let size = problem.task().size();
+        let mut steps = [1e-5 * size; 10];
+        steps[9] = 1e-5;
+        for (step, (value, (low, high))) in steps.iter_mut().zip(design.iter().zip(fit.bounds())) {
+            if value - low < 10.0 * *step || high - value < 10.0 * *step {
+                *step = 0.0;
+            }
+        }
+        let error = derivative_error(&fit, &design, &positions, &steps, 1e-5);
+        errors.extend(error.map(|error| error / (1.0 + size)));
+    }
+    errors.sort_by(f64::total_cmp);
+    assert!(errors.len() >= 25, "{}", errors.len());
+    assert!(errors[errors.len() * 4 / 5] < 1e-6, "{errors:?}");
+}
+
+#[test]
+fn a_motion_in_another_place_size_and_order_has_the_same_answer() {
+    let draws = &mut stream(73, 0);
+    for case in 0..8 {
+        let taken = taken(draws, 9, 0.01);
+        let spec = problem(&taken.poses, "[solve]\ncandidates = 3\nadvice = false\n");
+        let record = solved(spec.clone());
+        let Some(best) = record.candidates.first() else { continue };
+        for (mirrors, turns, reversed) in
+            [(false, 1, false), (true, 2, false), (false, 3, true), (true, 0, true)]
+        {
+            let by = Similarity {
+                from: [1.0, 2.0],
+                mirrors,
+                turns,
+                scale: 3.7,
+                to: [uniform(draws, -50.0, 50.0), 7.0],
+            };
+            let numbering = Numbering { first: if reversed { 8 } else { 0 }, reversed };
+            let image = solved(spec.placed(&by).renumbered(numbering));
+            let there = &image.candidates[0];
+            let same = |one: f64, other: f64| (one - other).abs() <= 1e-6 * one.abs().max(1e-18);
+            assert!(
+                same(best.error.objective * 3.7 * 3.7, there.error.objective),
+                "case {case}: {} {}",
+                best.error.objective * 3.7 * 3.7,
+                there.error.objective
+            );
+            assert_eq!(best.linkage_type, there.linkage_type, "case {case}");
+            assert_eq!(best.accepted, there.accepted, "case {case}");
+        }
+    }
+}
+
+#[test]
+fn what_is_called_accepted_meets_every_requirement() {
+    let draws = &mut stream(74, 0);
+    for case in 0..24 {
+        let taken = taken(draws, 6 + case % 5, 0.01);
+        let at = taken.poses[0].0;
+        let size = taken.poses.iter().map(|(p, _)| (p - at).norm()).fold(0.0, f64::max);
+        let wish = [
+            "transmission_deg_min = 25\n".to_owned(),
+            "link_ratio_max = 6\n".to_owned(),
+            format!(
+                "pivots_in = [{}, {}, {}, {}]\n",
+                at.re - 2.0 * size,
+                at.im - 2.0 * size,
+                at.re + 2.0 * size,
+                at.im + 2.0 * size
+            ),
+            "type = [\"crank-rocker\", \"double-rocker\", \"triple-rocker\"]\n".to_owned(),
+        ];
+        let record = solved(problem(&taken.poses, &format!("[require]\n{}{ALONE}", wish[case % 4])));
+        assert_true(&record);
+        for candidate in record.candidates.iter().filter(|candidate| candidate.accepted) {
+            assert!(candidate.defects.is_empty());
+            let links = candidate.linkage.links();
+            let ratio =
+                links.iter().copied().fold(0.0, f64::max) / links.iter().copied().fold(f64::MAX, f64::min);
+            match case % 4 {
+                0 => assert!(candidate.transmission_deg.worst >= 25.0 - 1e-5),
+                1 => assert!(ratio <= 6.0 + 1e-5),
+                2 => {
+                    for pivot in [candidate.linkage.crank_pivot(), candidate.linkage.follower_pivot()] {
+                        let off = pivot - at;
+                        assert!(off.re.abs().max(off.im.abs()) <= 2.0 * size * (1.0 + 1e-6));
+                    }
+                }
+                _ => assert!(
+                    ["crank-rocker", "double-rocker", "triple-rocker"]
+                        .contains(&candidate.linkage_type.name())
+                ),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_search_for_poses_is_repeatable_on_any_number_of_threads() {
+    let draws = &mut stream(75, 0);
+    let taken = taken(draws, 12, 0.02);
+    let spec = problem(&taken.poses, "[solve]\ncandidates = 4\n");
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        serde_json::to_string(&pool.install(|| solved(spec.clone()))).expect("JSON")
+    };
+    assert_eq!(on(1), on(2));
+    assert_eq!(on(2), on(3));
+}
+
+#[test]
+fn poses_and_places_are_fitted_together() {
+    let draws = &mut stream(76, 0);
+    let mut as_good = 0;
+    for case in 0..12 {
+        let taken = taken(draws, 13, [0.0, 0.005][case % 2]);
+        let rows: Vec<String> = taken
+            .poses
+            .iter()
+            .enumerate()
+            .map(|(j, (p, angle))| match j % 3 {
+                0 => format!("[{}, {}, {}]", p.re, p.im, angle.to_degrees()),
+                _ => format!("[{}, {}]", p.re, p.im),
+            })
+            .collect();
+        let far = 12.0 * taken.linkage.longest_link().max(taken.linkage.crank_side());
+        let text = format!(
+            "format = 1\n[task.motion]\nposes = [{}]\n{}[require]\nlink_ratio_max = 200\n{ALONE}",
+            rows.join(", "),
+            wide(taken.poses[0].0, far)
+        );
+        let spec = parse(&text).spec;
+        let record = solved(spec.clone());
+        assert_true(&record);
+        let checked = Problem::new(spec).expect("a problem");
+        let truth = from_the_truth(&checked, &taken);
+        let exact = (1e-9 * checked.task().size()).powi(2);
+        as_good += usize::from(record.candidates[0].error.objective <= (truth * (1.0 + 1e-6)).max(exact));
+    }
+    println!("{as_good} of 12 as good as from the truth");
+    assert!(as_good >= 11, "{as_good}");
+}
+
+#[test]
+fn few_poses_leave_a_family_whose_best_transmitting_member_comes_first() {
+    let text = "format = 1\n[task.motion]\nposes = [[0, 0, 0], [10, 5, 20], [15, 15, 60]]\n[require]\npivots_in = \
+                [-10, -15, 25, 20]\n";
+    let record = solved(parse(&format!("{text}{ALONE}")).spec);
+    assert_true(&record);
+    let best = &record.candidates[0];
+    assert!(best.accepted && best.error.rms < 1e-10);
+    assert!(best.transmission_deg.worst > 60.0, "{}", best.transmission_deg.worst);
+    assert!(record.family.is_some_and(|family| family.dimension > 0));
+}
