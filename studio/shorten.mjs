@@ -48,7 +48,8 @@ function places(script) {
 /** Names of two letters that a script has not. */
 function* free(script) {
   const letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_$";
-  for (const first of "$_") for (const second of letters) if (!script.includes(first + second)) yield first + second;
+  const firsts = `$_${letters.replace(/[\d$_]/g, "")}`;
+  for (const first of firsts) for (const second of letters) if (!script.includes(first + second)) yield first + second;
 }
 
 /** A script that is one function, `"use strict";(()=>{...})();`, with what it repeats written once. */

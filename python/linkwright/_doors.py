@@ -375,7 +375,7 @@ def export(linkage: Subject, format: str, **settings: Any) -> bytes:
         linkage: a linkage, a candidate, a result (its first candidate) or a path.
         format: one of :func:`formats`.
         settings: sizes in millimetres and the like, as ``--set`` of ``linkwright export``: ``scale``, ``unit``,
-            ``hole_mm``, ``margin_mm``, ``kerf_mm``, ``thickness_mm``, ``sheet_mm="600x300"``, ..
+            ``hole_mm``, ``motor_hole_mm``, ``margin_mm``, ``kerf_mm``, ``thickness_mm``, ``sheet_mm="600x300"``, ..
 
     Raises:
         ProblemError: the format or a setting is refused; the text has the remedy.

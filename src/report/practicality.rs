@@ -67,7 +67,12 @@ impl Words {
 
     /// Returns the construction of the links, and the motion over which they were examined.
     pub(super) fn made(&self, practicality: &Practicality) -> String {
-        let (radius, pin) = (practicality.build.plate_radius, practicality.build.pin_radius);
+        let build = &practicality.build;
+        let motor = build.motor.map_or(String::new(), |motor| {
+            let [shaft, boss] =
+                [motor.shaft_radius, motor.boss_radius].map(|radius| self.length(2.0 * radius));
+            format!(", at A {shaft} in the crank and {boss} in the ground")
+        });
         let of = |s: &Stretch| format!("{} to {}", degrees(s.from), degrees(s.to));
         let stretches: Vec<String> = practicality.sweep.stretches.iter().map(of).collect();
         let motion = match practicality.sweep.full_turn {
@@ -75,9 +80,9 @@ impl Words {
             false => format!("crank {}", stretches.join(", ")),
         };
         format!(
-            "Holes {}, plates {} around them; over {motion}.",
-            self.length(2.0 * pin),
-            self.length(radius - pin)
+            "Holes {}{motor}, plates {} around them; over {motion}.",
+            self.length(2.0 * build.pin_radius),
+            self.length(build.margin())
         )
     }
 
@@ -99,7 +104,7 @@ impl Words {
             Some(stack) => {
                 let through = |(pin, layer): &(Joint, usize)| self.through(layering, stack, *pin, *layer);
                 out.extend(stack.through.iter().map(through));
-                let head = practicality.build.plate_radius - practicality.build.pin_radius;
+                let head = practicality.build.margin();
                 out.extend(layering.passings(stack, head).map(|passing| self.passing(&passing)));
             }
             None => {

@@ -5,6 +5,7 @@ import { Keys } from "./boardkeys";
 import { boxShapes, boxSpots, type Corner } from "./boxes";
 import { Figure, type Moving } from "./figures";
 import type { Joint, Pose } from "./grab";
+import { unitAfter } from "./labels";
 import { pointShapes } from "./marks";
 import type { Box, Point, Task } from "./messages";
 import { Overview } from "./overview";
@@ -59,6 +60,7 @@ export class Board implements Surface {
   private closer = element("button", { id: "closer", hidden: "" }, ["a closer one"]) as HTMLButtonElement;
   task: Task | null = null;
   private moving: Moving | null = null;
+  private isFor = true;
   private pinned: Pinned[] = [];
   corner: Corner | null = null;
   private part = 0;
@@ -187,11 +189,13 @@ export class Board implements Surface {
     return view.windowOf(this.view, this.frame);
   }
 
-  /** Shows the target, a linkage, and those that are pinned; `another`: it is not the one that was shown before. */
-  show(task: Task, moving: Moving | null, pinned: Pinned[], another = false) {
+  /** Shows the target, a linkage, and those that are pinned; `isFor`: it was found for this path; `another`: it is not
+   * the one that was shown before. */
+  show(task: Task, moving: Moving | null, pinned: Pinned[], isFor = true, another = false) {
     if (another && this.moving && moving) this.fade(this.moving);
     this.task = task;
     this.moving = moving;
+    this.isFor = isFor;
     this.pinned = pinned;
     if (this.selected >= task.points.length) this.selected = -1;
     if (this.corner && !task[this.corner.kind]) this.corner = null;
@@ -262,8 +266,9 @@ export class Board implements Surface {
     this.drawGrips();
     this.mechanism.show(this.moving, this.toPixel);
     this.boxGroup.replaceChildren(...boxShapes(task, this.toPixel, this.corner));
-    this.hand.boxed(boxSpots(task, this.toPixel));
-    this.overview.show(boxOf(task.points), this.moving, this.window, this.frame);
+    const passed = this.moving?.passed ?? [];
+    const map = this.overview.show(boxOf(task.points), this.moving, this.window, this.frame);
+    this.hand.drawnAt([...boxSpots(task, this.toPixel), ...map], [...spots, ...passed.map(this.toPixel)]);
     const length = roundLength((0.2 * this.width) / this.view.scale);
     const y = this.height - 14;
     const longest = task.points.length > 2 ? longestMax(task) : null;
@@ -323,7 +328,7 @@ export class Board implements Surface {
 
   /** Lines from the points to the places where the linkage meets them, where these lie apart. */
   private errors(points: Point[]): string {
-    const met = this.moving?.cycle.points.slice(0, points.length) ?? [];
+    const met = (this.isFor && this.moving?.cycle.points.slice(0, points.length)) || [];
     return met
       .map(({ reached }, i) => {
         if (!reached) return "";
@@ -336,7 +341,7 @@ export class Board implements Surface {
   /** A length at the rim of the board: of the limit with its words above, as it may run off the board. */
   private bar(isLimit: boolean, length: number, y: number, what: string) {
     const right = 14 + length * this.view.scale;
-    const words = `${what}${Number(length.toPrecision(3))}${this.task?.unit ? ` ${this.task.unit}` : ""}`;
+    const words = `${what}${Number(length.toPrecision(3))}${unitAfter(this.task?.unit)}`;
     const place = isLimit ? { x: 18, y: y - 8 } : { x: px(right + 8), y };
     return [
       shape("path", { class: isLimit ? "limit" : "scale", d: `M14 ${y - 4}v4H${px(right)}v-4` }),

@@ -2,6 +2,7 @@
 
 import { figure } from "../../src/report/html/player/svg.mjs";
 import { inWords as cornerInWords, cornerOf, LEAST, nextCorner, resized } from "./boxes";
+import { unitAfter } from "./labels";
 import type { Hand, Surface } from "./surface";
 import { sizeOf, toleranceAt } from "./task";
 
@@ -75,7 +76,7 @@ export class Keys {
     const { task } = this.on;
     if (!task) return;
     const where = task.tolerances ? `at point ${index}` : "at every point";
-    this.say(`Largest error ${where}: ${figure(toleranceAt(task, index) ?? 0, 3)}${task.unit ? ` ${task.unit}` : ""}`);
+    this.say(`Largest error ${where}: ${figure(toleranceAt(task, index) ?? 0, 3)}${unitAfter(task.unit)}`);
   }
 
   private tellPoint() {

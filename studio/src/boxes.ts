@@ -1,15 +1,21 @@
 // The boxes of the requirements, drawn: for the fixed pivots, and for everything that moves.
 
 import { px, shape } from "../../src/report/html/player/svg.mjs";
+import { unitAfter } from "./labels";
 import type { Box, Point, Task } from "./messages";
-import { roundTo } from "./task";
+import { roundTo, sidesOf } from "./task";
 
 export type BoxKind = "pivots_in" | "footprint_in";
 /** The least side of a box, in pixels. */
 export const LEAST = 12;
 export const KINDS: BoxKind[] = ["pivots_in", "footprint_in"];
 
-const SAYS: Record<BoxKind, string> = { pivots_in: "both fixed pivots in here", footprint_in: "everything in here" };
+const SAYS: Record<BoxKind, string> = {
+  pivots_in: "both fixed pivots in here",
+  footprint_in: "all joints and P in here",
+};
+/** Pixels from the upper rim of a box to its words: of one that may lie around the other outside. */
+const WORDS: Record<BoxKind, number> = { pivots_in: 15, footprint_in: -8 };
 /** Which numbers of a box each corner holds, in the order in which keys go through them. */
 const CORNERS: [number, number][] = [
   [0, 1],
@@ -54,6 +60,12 @@ export function nextCorner(task: Task, now: Corner | null): Corner | null {
   return all[at + 1] ?? null;
 }
 
+/** The sides of a box: `300 × 200 mm`. */
+const sizeInWords = (box: Box, unit: string | undefined) =>
+  sidesOf(box)
+    .map((side) => Number(side.toPrecision(4)))
+    .join(" × ") + unitAfter(unit);
+
 export const inWords = (at: Corner) =>
   `Box for ${at.kind === "pivots_in" ? "the pivots" : "everything"}, ${NAMES[at.corner]} corner`;
 
@@ -63,7 +75,7 @@ export function boxSpots(task: Task, toPixel: (p: Point) => Point): Point[] {
     const box = task[kind];
     if (!box) return [];
     const [left, top] = toPixel(cornerOf(box, 3));
-    const words = [30, 70, 110, 150].map((along): Point => [left + along, top + 10]);
+    const words = [30, 70, 110, 150, 190, 230].map((along): Point => [left + along, top + WORDS[kind] - 5]);
     return [...NAMES.map((_, corner) => toPixel(cornerOf(box, corner))), ...words];
   });
 }
@@ -83,7 +95,9 @@ export function boxShapes(task: Task, toPixel: (p: Point) => Point, chosen: Corn
         width: px(Math.max(right - left, 0)),
         height: px(Math.max(bottom - top, 0)),
       }),
-      shape("text", { class: "number", x: px(left + 6), y: px(top + 15) }, [SAYS[kind]]),
+      shape("text", { class: "number", x: px(left + 8), y: px(top + WORDS[kind]) }, [
+        `${SAYS[kind]}, ${sizeInWords(box, task.unit)}`,
+      ]),
       ...NAMES.flatMap((_, corner) => {
         const [x, y] = toPixel(cornerOf(box, corner));
         const here = chosen?.kind === kind && chosen.corner === corner;

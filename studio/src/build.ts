@@ -1,7 +1,7 @@
 // The Build tab: plates of the chosen linkage to cut, live with their sizes; the order of layers and what comes near
 // what; everything in one archive.
 
-import { element } from "../../src/report/html/player/svg.mjs";
+import { element, shape } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
 import { pinnedFor } from "./task";
@@ -10,6 +10,8 @@ import { pinnedFor } from "./task";
 const SIZES: [string, string, string][] = [
   ["thickness_mm", "Thickness", "¾ of hole"],
   ["hole_mm", "Holes", "4"],
+  ["motor_hole_mm", "Motor's shaft at A", "as holes"],
+  ["boss_hole_mm", "Motor's boss at A", "as shaft"],
   ["margin_mm", "Material around a hole", "as hole"],
   ["kerf_mm", "Kerf of the tool", "0"],
 ];
@@ -89,8 +91,7 @@ export class BuildPanel {
       this.cutting,
       element("details", { open: "" }, [element("summary", {}, ["Layers and clearances"]), this.layers]),
     );
-    const sizes = ["hole_mm", "margin_mm", "kerf_mm", "sheet_mm"];
-    this.dxf.addEventListener("click", () => void this.file("dxf-plates", "-plates.dxf", sizes));
+    this.dxf.addEventListener("click", () => void this.file("dxf-plates", "-plates.dxf"));
     this.save.addEventListener("click", () => void this.file("archive", ".zip"));
   }
 
@@ -157,15 +158,16 @@ export class BuildPanel {
     if (key === this.shownOf) return;
     this.shownOf = key;
     try {
-      const plates = await api.exported(of, "svg-plates", {
-        set: only(set, ["hole_mm", "margin_mm", "kerf_mm", "sheet_mm"]),
-      });
-      const layers = await api.exported(of, "layers", { set: only(set, ["hole_mm", "margin_mm"]) });
+      const plates = await api.exported(of, "svg-plates", { set: flat(set) });
+      const layers = await api.exported(of, "layers", { set });
       const [picture, text] = await Promise.all([plates.text(), layers.text()]);
       if (this.shownOf !== key) return;
       this.fault.textContent = "";
       this.place.classList.remove("stale");
-      this.plates.replaceChildren(new DOMParser().parseFromString(picture, "image/svg+xml").documentElement);
+      const drawing = new DOMParser().parseFromString(picture, "image/svg+xml").documentElement;
+      // Its page is the sheet.
+      if (set.sheet_mm) drawing.prepend(shape("rect", { width: "100%", height: "100%" }));
+      this.plates.replaceChildren(drawing);
       this.layers.textContent = text;
       for (const button of [this.dxf, this.save]) button.disabled = false;
     } catch (error) {
@@ -176,13 +178,13 @@ export class BuildPanel {
     }
   }
 
-  /** Saves a format with the sizes that it takes; all of them, if none are named. */
-  private async file(format: string, ending: string, sizes?: string[]) {
+  /** Saves a format with the sizes that it takes. */
+  private async file(format: string, ending: string) {
     const chosen = this.host.chosen();
     if (!chosen) return;
     const name = `${chosen.task.name}-${this.rank()}`.slice(-50);
-    const set = sizes ? only(this.set(), sizes) : this.set();
-    const more = sizes ? { set } : { set, name };
+    const set = this.set();
+    const more = format === "archive" ? { set, name } : { set: flat(set) };
     try {
       api.saved(await api.exported(api.drawn(chosen), format, more), `${name}${ending}`);
       this.host.say(`Saved as ${name}${ending}.`);
@@ -194,11 +196,9 @@ export class BuildPanel {
 
 /** The studio's words with the labels of the fields in place of its keys. */
 function inLabels(text: string): string {
-  let said = text.replaceAll("sheet_mm", "Sheet").replaceAll("gap_mm", "the gap between plates");
-  for (const [key, label] of SIZES) said = said.replaceAll(`\`${key}\``, label).replaceAll(key, label);
-  return said;
+  const labels = [...SIZES, ["sheet_mm", "Sheet"], ["gap_mm", "the gap between plates"]];
+  return text.replace(/`?(\w+_mm)`?/g, (all, key) => labels.find(([name]) => name === key)?.[1] ?? all);
 }
 
-/** The entries under these keys. */
-const only = (set: Record<string, string>, keys: string[]) =>
-  Object.fromEntries(Object.entries(set).filter(([name]) => keys.includes(name)));
+/** The sizes of a drawing of plates, which have no thickness there. */
+const flat = ({ thickness_mm: _, ...set }: Record<string, string>) => set;

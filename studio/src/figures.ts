@@ -9,10 +9,14 @@ export type Toward = (p: Point) => Point;
 
 type Joints = { C: Point; D: Point; P: Point } | null;
 
+/** Of so many positions of a circuit one is looked at for the places that the links pass. */
+const PASSED = 16;
+
 /** A linkage made ready to move, as far as it is looked at: of many through nine points few are in sight. */
 export class Moving {
   private made: Cycle | null = null;
   private joints: Joints[] | null = null;
+  private places: Point[] | null = null;
 
   constructor(
     readonly shown: Shown,
@@ -33,6 +37,19 @@ export class Moving {
 
   get curve(): (Point | null)[] {
     return this.circuit.map((joints) => joints?.P ?? null);
+  }
+
+  /** Places that the links pass. */
+  get passed(): Point[] {
+    const { A, B } = this.shown.linkage;
+    const along = (p: Point, q: Point) =>
+      [0, 0.25, 0.5, 0.75, 1].map((part): Point => [p[0] + (q[0] - p[0]) * part, p[1] + (q[1] - p[1]) * part]);
+    this.places ??= this.circuit.flatMap((joints, i) => {
+      if (!joints || i % PASSED !== 0) return [];
+      const { C, D, P } = joints;
+      return [...along(A, C), ...along(B, D), ...along(C, P), ...along(D, P)];
+    });
+    return this.places;
   }
 
   /** The links in one of the positions, as a line through the joints. */

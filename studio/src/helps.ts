@@ -2,7 +2,7 @@
 
 import { element, figure, minus } from "../../src/report/html/player/svg.mjs";
 import { changing } from "./focus";
-import { labelOf } from "./labels";
+import { labelOf, unitAfter } from "./labels";
 import type { Relaxation, Task, Value } from "./messages";
 import { EXACT, type Instead, withoutControls } from "./task";
 
@@ -30,7 +30,7 @@ const words = (value: Value): string => {
 
 /** A change in plain words: `least transmission angle 18° instead of 45°`. */
 function inWords(key: string, from: Value, to: Value, unit: string | undefined): string {
-  const after = UNITS[key.replace("require.", "")] ?? (unit ? ` ${unit}` : "");
+  const after = UNITS[key.replace("require.", "")] ?? unitAfter(unit);
   return `${labelOf(key)} ${words(to)}${after} instead of ${words(from)}${after}`;
 }
 
@@ -66,7 +66,7 @@ export class Helps {
       return element("li", {}, [
         button,
         element("span", {}, [
-          rms < ROUNDING ? "goes exactly through the points" : `gives rms ${figure(rms, 3)}${unit ? ` ${unit}` : ""}`,
+          rms < ROUNDING ? "goes exactly through the points" : `gives rms ${figure(rms, 3)}${unitAfter(unit)}`,
         ]),
       ]);
     });

@@ -4,8 +4,11 @@ import { element, figure } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
 import { changing, setChildren } from "./focus";
+import { byId } from "./ids";
+import { unitAfter } from "./labels";
 import type { Solution, Task } from "./messages";
 import { taskOf } from "./task";
+import { longestOf } from "./words";
 
 /** Milliseconds between looks while something runs, and while nothing does. */
 const SOON = 700;
@@ -70,7 +73,7 @@ class Row {
     const { progress, result } = job;
     this.node.dataset.state = job.state;
     this.state.textContent = STATES[job.state];
-    const unit = result?.unit ? ` ${result.unit}` : "";
+    const unit = unitAfter(result?.unit);
     const best = result?.best;
     let figures = best
       ? `rms ${figure(best.rms, 3)}${unit}, ${best.type}, μ ${figure(best.transmission_deg, 3)}°${best.accepted ? "" : ", not accepted"}`
@@ -131,23 +134,29 @@ export class JobsPanel {
       element("label", { class: "check" }, [this.replace, "replace an earlier one"]),
       begin,
     ]);
-    place.append(
-      element("details", { class: "desk-card", id: "searches", name: "desk" }, [
-        element("summary", {}, [this.heading]),
-        element("p", { class: "quiet" }, [
-          "A long search of what is drawn now; its result is saved in a folder, as linkwright synth saves it, and goes on when this page is closed.",
-        ]),
-        form,
-        this.none,
-        this.list,
-        element("div", { class: "row" }, [
-          compare,
-          page,
-          element("span", { class: "quiet" }, ["the ticked ones, the pinned ones and the one on the board"]),
-        ]),
-        this.comparison,
+    const beside = byId("compare");
+    const panel = element("details", { class: "desk-card", id: "searches", name: "desk" }) as HTMLDetailsElement;
+    panel.append(
+      element("summary", {}, [this.heading]),
+      element("p", { class: "quiet" }, [
+        "A long search of what is drawn now; its result is saved in a folder, as linkwright synth saves it, and goes on when this page is closed.",
       ]),
+      form,
+      this.none,
+      this.list,
+      element("div", { class: "row" }, [
+        compare,
+        page,
+        element("span", { class: "quiet" }, ["the ticked ones, the pinned ones and the one on the board"]),
+      ]),
+      this.comparison,
     );
+    place.append(panel);
+    beside.addEventListener("click", async () => {
+      panel.open = true;
+      await this.compare();
+      this.comparison.scrollIntoView({ block: "end" });
+    });
     begin.addEventListener("click", () => void this.start());
     compare.addEventListener("click", () => void this.compare());
     page.addEventListener("click", () => void this.compareAsPage());
@@ -274,11 +283,12 @@ export class JobsPanel {
         element("td", { class: "n" }, [value === null ? "–" : `${figure(value, 4)}${of}`]);
       const head = [
         "linkage",
-        `rms${unit ? ` ${unit}` : ""}`,
+        `rms${unitAfter(unit)}`,
         "largest",
         "transmission",
         "ratio",
-        "size",
+        "extent",
+        "longest link",
         "type",
         "accepted",
       ];
@@ -302,7 +312,8 @@ export class JobsPanel {
                   cell(row.figures.max),
                   cell(row.figures.transmission, "°"),
                   cell(row.figures.link_ratio),
-                  cell(row.figures.size),
+                  cell(row.figures.extent),
+                  cell(longestOf(row.linkage)),
                   element("td", {}, [row.type]),
                   element("td", { class: row.accepted ? "good" : "bad" }, [row.accepted ? "yes" : "no"]),
                 ]),

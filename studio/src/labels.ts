@@ -17,6 +17,9 @@ const LABELS: Record<string, [label: string, row?: string]> = {
   closing: ["comes back to the start of a closed path without reversing", "return to the first point"],
   tolerance: ["largest error at a point", "error at the worst point"],
 };
+/** A unit as it is written after a length. */
+export const unitAfter = (unit: string | null | undefined) => (unit ? ` ${unit}` : "");
+
 const ROWS = new Map(Object.values(LABELS).map(([label, row]) => [row, label]));
 const SIDES: Record<string, string> = { xmin: "left", ymin: "bottom", xmax: "right", ymax: "top" };
 

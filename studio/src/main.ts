@@ -16,7 +16,7 @@ import type { Linkage } from "./grab";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
 import { byId, input } from "./ids";
-import { labelled } from "./labels";
+import { labelled, unitAfter } from "./labels";
 import { type Place, remember, remembered } from "./memory";
 import type { Answer, AnyAsk, Point, Shown, Task } from "./messages";
 import { nameFault } from "./names";
@@ -29,7 +29,7 @@ import { MOST_PINNED, Showing } from "./showing";
 import { SizeChip } from "./size";
 import { namesOfAsked, Stays } from "./stays";
 import { type How, Store } from "./store";
-import { inWords, isExact, Strip } from "./strip";
+import { inWords, isExact, MANY, Strip } from "./strip";
 import { SureChip } from "./sure";
 import type { Hand, Tool } from "./surface";
 import { Table } from "./table";
@@ -52,7 +52,7 @@ interface State {
   lengths: number;
 }
 
-/** Milliseconds after which a view that rests is remembered. */
+/** Milliseconds after which a view or a linkage in the hand that rests is remembered. */
 const VIEW_RESTS = 300;
 /** Milliseconds for which the controls wait while the hand moves. */
 const CONTROLS_WAIT = 100;
@@ -74,6 +74,8 @@ class Page {
   private begunWith = "null";
   /** How many times as long as at first all lengths have been made. */
   private lengths = 1;
+  /** The time until which many cards wait for a hand that moves. */
+  private cardsWait = 0;
   private filling: ReturnType<typeof setTimeout> | undefined;
   private looking: ReturnType<typeof setTimeout> | undefined;
   /** What the page has written among the coordinates; anything else is the user's, until it is taken. */
@@ -168,12 +170,14 @@ class Page {
     for (const tool of TOOLS)
       byId(`tool-${tool}`).addEventListener("click", () => this.use(this.board.tool === tool ? "draw" : tool));
     byId("board").addEventListener("pointerdown", () => this.gallery.open(false));
-    listenToRequirements(
-      () => this.task,
-      (task) => this.replace(task),
-      () => this.board.fit(),
-      () => this.board.isWalker,
-    );
+    listenToRequirements({
+      now: () => this.task,
+      change: (task) => this.replace(task),
+      shown: () => this.board.fit(),
+      isWalker: () => this.board.isWalker,
+      standing: () => this.scene.box(),
+      say: (text) => this.desk.say(text),
+    });
     listenToControls({
       back: (way) => this.back(way),
       clear: () => this.clear(),
@@ -182,6 +186,7 @@ class Page {
       walk: (on) => {
         this.store.note();
         this.walk(on);
+        this.draw();
         this.keep();
         const hips = on && this.scene.chosen()?.shown.linkage;
         const ground = tasks.boxOf(this.task.points)?.[1] ?? 0;
@@ -239,12 +244,8 @@ class Page {
       joint: (pose, joint, to) => this.byHand.drag(pose, joint, to),
       turn: (crankDeg) => this.scene.turn(crankDeg),
       marked: () => this.photograph.marked(),
-      boxed: (spots) => this.size?.clearOf(spots),
-      looked: () => {
-        // A view that the user has changed is remembered, once it rests.
-        clearTimeout(this.looking);
-        if (this.exchange.isBegun) this.looking = setTimeout(() => this.keep(), VIEW_RESTS);
-      },
+      drawnAt: (marks, links) => this.size?.clearOf(marks, links),
+      looked: () => this.keepLater(),
       takeCloser: () => {
         this.showing.takeBest();
         this.draw();
@@ -269,6 +270,8 @@ class Page {
   private clear() {
     const asked = namesOfAsked(this.task);
     const nothing = tasks.pathAlone({ ...this.task, name: "drawing", source: undefined, points: [], closed: false });
+    // Points are clicked anew; a box is not drawn beside nothing.
+    if (this.board.tool !== "points") this.use("draw");
     this.replace(nothing, { fresh: true });
     this.walk(false);
     this.gallery.open(false);
@@ -315,11 +318,14 @@ class Page {
     if (answer) {
       const { version } = this.store;
       this.showing.restore({ ...answer, version }, version, kept?.chosen ?? null);
+      this.holdAgain(kept?.byHand ?? null);
       this.draw();
       this.keep();
     }
     void this.desk.begin();
-    this.scene.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+    const moves = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    if (this.byHand.shown) this.wasPlaying = moves;
+    else this.scene.play(moves);
   }
 
   /** Another task in place of the one that stands, which can be undone. */
@@ -387,6 +393,13 @@ class Page {
     }
     this.desk.changed(true);
     this.build.later();
+    this.keepLater();
+  }
+
+  /** Takes the linkage into the hand that a state had there; null: none. */
+  private holdAgain(byHand: Shown | null) {
+    if (byHand || this.byHand.shown) this.byHand.take(byHand, byHand !== null);
+    if (byHand && this.board.tool !== "grab") this.use("grab");
   }
 
   /** Searches with what is locked of the linkage in the hand. */
@@ -467,13 +480,15 @@ class Page {
   private answered(answer: Answer) {
     if (this.showing.hear(answer, this.store.version).chosenIsGone)
       this.desk.say("The linkage that was chosen is not among these any more: the best one is shown.");
-    this.draw();
+    const now = performance.now();
+    const waiting = answer.doing === "following" && answer.candidates.length > MANY && now < this.cardsWait;
+    if (!waiting) this.cardsWait = now + CONTROLS_WAIT;
+    this.draw(waiting);
     const best = this.showing.answer?.candidates[0];
-    const unit = this.task.unit ? ` ${this.task.unit}` : "";
     const near =
       best && (best.ability || isExact(best))
         ? "exactly through the points"
-        : `rms ${figure(best?.rms ?? 0, 3)}${unit}`;
+        : `rms ${figure(best?.rms ?? 0, 3)}${unitAfter(this.task.unit)}`;
     const head = best ? `Best: ${near}, ${inWords(best)}. ` : "";
     // How the search went stands behind the chip that says how sure it is.
     const [short, ...rest] = answer.said.split("\n");
@@ -487,8 +502,9 @@ class Page {
     this.said.tell(status, answer.doing === "searching" ? answer.progress : undefined);
   }
 
-  private draw() {
-    byId("nothing").hidden = this.scene.draw() > 0;
+  private draw(waiting = false) {
+    byId("nothing").hidden = this.scene.draw(waiting) > 0;
+    byId("compare").hidden = this.showing.pinned.length === 0;
     const { answer } = this.showing;
     const chosen = this.scene.chosen();
     // What is asked now is not what a pinned one jams for; one in the hand is changed by the hand.
@@ -534,6 +550,12 @@ class Page {
     this.draw();
   }
 
+  /** Remembers what the hand changes, once it rests. */
+  private keepLater() {
+    clearTimeout(this.looking);
+    if (this.exchange.isBegun) this.looking = setTimeout(() => this.keep(), VIEW_RESTS);
+  }
+
   private keep() {
     const { task, begunWith, hints } = this;
     const { pinned, answer } = this.showing;
@@ -546,7 +568,9 @@ class Page {
       isWalker: this.board.isWalker,
       build: this.build.sizes,
       // What is found for another task is nothing for this one.
-      ...(answer?.version === this.store.version ? { answer, chosen: this.showing.chosenPlace() } : {}),
+      ...(answer?.version === this.store.version
+        ? { answer, chosen: this.showing.chosenPlace(), byHand: this.byHand.shown }
+        : {}),
     });
   }
 
@@ -604,8 +628,7 @@ class Page {
     this.put(then.task, {});
     const { answer, chosen } = then;
     if (answer && answer.candidates.length > 0) this.showing.restore(answer, this.store.version, chosen);
-    if (then.byHand || this.byHand.shown) this.byHand.take(then.byHand, then.byHand !== null);
-    if (then.byHand && this.board.tool !== "grab") this.use("grab");
+    this.holdAgain(then.byHand);
     this.draw();
   }
 

@@ -1,6 +1,6 @@
 // What is remembered: steps to go back, and everything over a reload.
 
-import type { Answer, Solution, Task } from "./messages";
+import type { Answer, Shown, Solution, Task } from "./messages";
 import type { View } from "./view";
 
 const KEY = "linkwright-studio";
@@ -16,6 +16,8 @@ export interface Remembered {
   /** What was found for the task, and which of it is chosen. */
   answer?: Answer;
   chosen?: Place;
+  /** The linkage in the hand. */
+  byHand?: Shown | null;
   /** What stands in the fields of the Build tab. */
   build?: Record<string, string>;
 }
@@ -52,7 +54,8 @@ export function remembered(): Remembered | null {
   // The numbers of linkages are those of a connection that is no more.
   const candidates = what.answer?.candidates?.map(({ number: _, ...shown }) => shown) ?? [];
   const answer = what.answer && candidates.every((one) => one.linkage) ? { ...what.answer, candidates } : undefined;
-  return { ...what, view, pinned, answer };
+  const byHand = what.byHand?.linkage ? what.byHand : null;
+  return { ...what, view, pinned, answer, byHand };
 }
 
 export const remember = (what: Remembered) => keep(KEY, what);

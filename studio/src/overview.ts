@@ -33,12 +33,13 @@ export class Overview {
     return view.toPlane(this.map, FRAME, own);
   }
 
-  show(path: Box | null, moving: Moving | null, window: Box, board: view.Frame) {
+  /** Gives places of the map on the board; none where it is hidden. */
+  show(path: Box | null, moving: Moving | null, window: Box, board: view.Frame): Point[] {
     const linkage = moving?.box() as Box | undefined;
     const everything = view.joined([...(linkage ? [linkage] : []), ...(path ? [path] : [])]);
     const isHidden = !everything || !linkage || !moving || view.isWithin(everything, window);
     this.group.classList.toggle("absent", isHidden);
-    if (isHidden) return;
+    if (isHidden) return [];
     const by = Math.min(1, (PART * board.width) / FRAME.width, (PART * board.height) / FRAME.height);
     this.at = { x: board.width - FRAME.width * by - 8, y: board.height - FRAME.height * by - 8, by };
     setAll(this.group, { transform: `translate(${px(this.at.x)} ${px(this.at.y)}) scale(${by})` });
@@ -56,5 +57,6 @@ export class Overview {
     };
     if (path) box(this.path, path);
     box(this.seen, window);
+    return [0, 0.5, 1].map((part) => [this.at.x + part * FRAME.width * by, this.at.y]);
   }
 }

@@ -2,9 +2,12 @@
 
 import { KINDS } from "./boxes";
 import { byId, input } from "./ids";
+import { unitAfter } from "./labels";
 import type { Box, Task, Unit } from "./messages";
 import { nameFault } from "./names";
 import {
+  boxOf,
+  boxOfSides,
   canBeExact,
   EXACT,
   extentTimes,
@@ -13,6 +16,7 @@ import {
   pivotsBeside,
   roundTo,
   settled,
+  sidesOf,
   sizeOf,
   spaceAround,
   withExtent,
@@ -60,13 +64,26 @@ const CHECKS = [
   ["closing", "one-way"],
 ] as const;
 
+/** The sides of the box for everything. */
+const FITS = ["fit-width", "fit-height"];
+
+const FITS_SAID =
+  "Joints and P stay in the box on the board; plates reach past it by half a hole and the material around it. Drag its corners to move it.";
+
+/** What the controls need of the page. */
+export interface Asking {
+  now(): Task;
+  change(task: Task): void;
+  /** A box has come: it is brought into view. */
+  shown(): void;
+  isWalker(): boolean;
+  /** The box of the linkage on the board over its motion. */
+  standing(): Box | null;
+  say(text: string): void;
+}
+
 /** Listens to the controls; every change makes another task of the one that stands. */
-export function listenToRequirements(
-  now: () => Task,
-  change: (task: Task) => void,
-  shown: () => void,
-  isWalker: () => boolean,
-) {
+export function listenToRequirements({ now, change, shown, isWalker, standing, say }: Asking) {
   const on = (id: string, act: () => Task | null) =>
     byId(id).addEventListener("change", () => {
       const task = act();
@@ -85,6 +102,23 @@ export function listenToRequirements(
       });
     });
   }
+  for (const id of FITS)
+    on(id, () => {
+      const task = now();
+      const sides = FITS.map((one) => input(one).valueAsNumber);
+      const around = task.footprint_in ?? standing() ?? boxOf(task.points);
+      // One that is emptied takes the box away; one alone waits for the other.
+      if (!(input(id).valueAsNumber > 0) || !around) return { ...task, footprint_in: undefined };
+      const missing = sides.findIndex((side) => !(side > 0));
+      if (missing >= 0) {
+        input(FITS[missing]).setAttribute("aria-invalid", "true");
+        return null;
+      }
+      change({ ...task, footprint_in: boxOfSides(sides, task.points, around) });
+      if (!task.footprint_in) shown();
+      say(FITS_SAID);
+      return null;
+    });
   for (const [id, usual] of CHECKS) on(id, () => ({ ...now(), [id]: input(id).checked ? usual : "any" }));
   on("over", () => ({ ...now(), transmission_over: (select("over").value || undefined) as Task["transmission_over"] }));
   on("direction", () => ({ ...now(), direction: select("direction").value as Task["direction"] }));
@@ -123,7 +157,7 @@ function tellSize({ id, any, most }: (typeof SIZES)[number], times: number | nul
   const text =
     times === null
       ? any
-      : `${most} ${Number(times.toPrecision(3))} × the path${points.length > 1 ? ` (${length}${unit ? ` ${unit}` : ""})` : ""}`;
+      : `${most} ${Number(times.toPrecision(3))} × the path${points.length > 1 ? ` (${length}${unitAfter(unit)})` : ""}`;
   byId(`${id}-said`).textContent = text;
   input(id).setAttribute("aria-valuetext", text);
 }
@@ -142,6 +176,11 @@ export function fillRequirements(task: Task) {
       set(prefix + side, one && roundTo(one[i], Math.hypot(one[2] - one[0], one[3] - one[1]) || 1, 4));
     });
   }
+  FITS.forEach((id, i) => {
+    const side = task.footprint_in && sidesOf(task.footprint_in)[i];
+    set(id, side && roundTo(side, side, 4));
+    input(id).setAttribute("aria-invalid", "false");
+  });
   for (const [id, usual] of CHECKS) input(id).checked = (task[id] ?? usual) === usual;
   select("over").value = task.transmission_over ?? "";
   select("direction").value = task.direction ?? "any";

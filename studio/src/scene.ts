@@ -6,9 +6,10 @@ import { isSame } from "./choice";
 import { Clock } from "./clock";
 import { type Moving, movingOf } from "./figures";
 import type { Gallery } from "./gallery";
-import type { Shown, Solution, Task } from "./messages";
+import type { Box, Shown, Solution, Task } from "./messages";
 import type { Showing } from "./showing";
 import type { Strip } from "./strip";
+import { isSamePath } from "./task";
 
 /** The parts of the page that a scene moves. */
 export interface Parts {
@@ -85,15 +86,22 @@ export class Scene {
     return Number(rank) ? `Linkage ${rank}` : rank === "by-hand" ? "your linkage" : rank.replace("pinned-", "Pinned ");
   }
 
-  /** Draws board and cards; gives how many cards there are. */
-  draw(): number {
-    const { byHand, showing, strip, task } = this.parts;
+  /** The box of the linkage on the board over its motion. */
+  box(): Box | null {
+    return (this.moving[this.place]?.box() as Box | undefined) ?? null;
+  }
+
+  /** Draws the board, and the cards unless they wait; gives how many cards there are. */
+  draw(waiting = false): number {
+    const { board, byHand, showing, strip, task } = this.parts;
     const all = showing.all(task());
     const inHand = byHand.solution();
     this.moving = [...all, ...(inHand ? [inHand] : [])].map(({ shown, task }) => movingOf(shown, task.points));
     this.drawBoard();
+    if (waiting) return all.length;
     const cards = this.moving.slice(0, all.length);
-    strip.show(cards, all, showing.candidates().length, inHand ? -1 : showing.place(), showing.own, task());
+    const place = inHand ? -1 : showing.place();
+    strip.show(cards, all, showing.candidates().length, place, showing.own, task(), board.isWalker);
     strip.pose(this.clock.part);
     return all.length;
   }
@@ -106,10 +114,13 @@ export class Scene {
     const pins = showing.pinned.map(({ colour = 0 }, i) => ({ moving: this.moving[found + i], colour }));
     const another = shown !== null && this.onBoard !== null && !isSame(shown.shown, this.onBoard);
     this.onBoard = shown?.shown ?? this.onBoard;
+    const now = task();
+    const meant = this.chosen()?.task ?? now;
     board.show(
-      task(),
+      now,
       shown,
       pins.filter(({ moving }) => moving && moving !== shown),
+      meant === now || isSamePath(meant, now),
       another,
     );
     board.offer(byHand.shown ? null : showing.offer());

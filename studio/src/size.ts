@@ -5,8 +5,10 @@ import { element, figure } from "../../src/report/html/player/svg.mjs";
 import type { Point, Task } from "./messages";
 import { boxOf } from "./task";
 
-/** Pixels from the upper rim of the board, and around what it keeps clear of. */
-const [TOP, ROOM] = [9, 14];
+/** Pixels from the rim of the board, around what it keeps clear of, above the scale at the bottom, and of offers at the top. */
+const [RIM, ROOM, LOWEST, OFFERS] = [9, 14, 34, 60];
+/** Pixels from one place that is tried to the next; so many places of links weigh as much as a corner or a word. */
+const [STEP, HEAVY] = [22, 20];
 
 export class SizeChip {
   private field = element("input", {
@@ -21,7 +23,10 @@ export class SizeChip {
   private length = 0;
 
   /** `change` makes all lengths so many times as long. */
-  constructor(place: HTMLElement, change: (by: number) => void) {
+  constructor(
+    private place: HTMLElement,
+    change: (by: number) => void,
+  ) {
     place.append(this.node);
     this.field.addEventListener("change", () => {
       const by = this.field.valueAsNumber / this.length;
@@ -30,14 +35,27 @@ export class SizeChip {
     });
   }
 
-  /** Stands at the rim of the board where none of these pixels lies beneath; at the top if there is no such place. */
-  clearOf(spots: Point[]) {
-    const { offsetLeft: left, offsetWidth: wide, offsetHeight: high } = this.node;
-    const isClear = (top: number) =>
-      spots.every(([x, y]) => x < left - ROOM || x > left + wide + ROOM || y < top - ROOM || y > top + high + ROOM);
-    const steps = spots.length > 0 && wide > 0 ? [0, 1, 2, 3, 4, 5] : [];
-    const step = steps.find((i) => isClear(TOP + i * (high + ROOM))) ?? 0;
-    this.node.style.top = step > 0 ? `${TOP + step * (high + ROOM)}px` : "";
+  /** Stands where the fewest of these pixels lie beneath, `marks` before `links`: in the corner where that is free, else
+   * where it stands, if no place is better. */
+  clearOf(marks: Point[], links: Point[]) {
+    const { offsetLeft, offsetTop, offsetWidth: wide, offsetHeight: high } = this.node;
+    const { clientWidth, clientHeight } = this.place;
+    const within = (spots: Point[], [left, top]: Point, room: number) =>
+      spots.filter(([x, y]) => x > left - room && x < left + wide + room && y > top - room && y < top + high + room)
+        .length;
+    const covered = (at: Point) => HEAVY * within(marks, at, ROOM) + within(links, at, ROOM / 2);
+    const isDrawn = marks.length + links.length > 0 && wide > 0;
+    const home: Point = [RIM, RIM];
+    let best = isDrawn && covered(home) > 0 ? ([offsetLeft, offsetTop] as Point) : home;
+    let least = isDrawn ? covered(best) : 0;
+    const right = clientWidth - wide - RIM;
+    for (const left of [RIM, right, right / 2])
+      for (let top = RIM; least > 0 && top + high < clientHeight - (left > RIM ? RIM : LOWEST); top += STEP) {
+        // The upper right corner is that of what the page offers.
+        const count = left > RIM && top < OFFERS ? least : covered([left, top]);
+        if (count < least) [best, least] = [[left, top], count];
+      }
+    Object.assign(this.node.style, { left: `${best[0]}px`, top: `${best[1]}px` });
   }
 
   show(task: Task) {

@@ -4,12 +4,13 @@ import { element, figure, setAll } from "../../src/report/html/player/svg.mjs";
 import { isTheSame } from "./choice";
 import type { Moving } from "./figures";
 import { changing, setChildren } from "./focus";
-import { labelOf } from "./labels";
+import { labelOf, unitAfter } from "./labels";
 import type { Shown, Solution, Task } from "./messages";
 import { Picture } from "./picture";
 import { longestMax, pinnedFor, sizeOf } from "./task";
 import {
   type Graded,
+  gaitInWords,
   jams,
   limitedBy,
   marks,
@@ -22,7 +23,7 @@ import {
 
 const [W, H] = [150, 96];
 /** Of more than so many only the pictures in sight are drawn. */
-const MANY = 12;
+export const MANY = 12;
 
 export const inWords = (shown: Shown) =>
   shown.accepted
@@ -38,7 +39,7 @@ export function isExact({ ability, max, linkage: { a, b, c, d, e } }: Shown): bo
 
 /** How near it comes: to the last digit where it is one of the linkages through nine points. */
 export function nearness(shown: Shown, unit: string | undefined): string {
-  const length = unit ? ` ${unit}` : "";
+  const length = unitAfter(unit);
   if (isExact(shown)) return "through the points to the last digit";
   if (!shown.ability) return `rms ${figure(shown.rms, 3)}${length}, at most ${figure(shown.max, 3)}${length}`;
   return `exactly through the points${shown.certified_within === undefined ? "" : ", proved"}; ${shown.ability}`;
@@ -58,6 +59,7 @@ interface Entry {
   name: string;
   marks: string[];
   chosen: boolean;
+  isWalker: boolean;
   /** Of one that is pinned. */
   colour?: number;
   /** Of a candidate: whether it is pinned. */
@@ -96,7 +98,7 @@ class Card {
   }
 
   /** Shows a linkage; `part`: where in its motion, drawn even out of sight; null: once it is in sight. */
-  show({ moving, task, name, marks, chosen, colour, isKept, elsewhere }: Entry, part: number | null) {
+  show({ moving, task, name, marks, chosen, isWalker, colour, isKept, elsewhere }: Entry, part: number | null) {
     const { shown } = moving;
     Object.assign(this, { moving, task });
     const few = part !== null;
@@ -120,7 +122,8 @@ class Card {
     ];
     const extent = few ? extentOf(moving) : undefined;
     const strays = few && task.closed && !exact ? strayInWords(moving, task.points, size) : "";
-    const plain = [sizeInWords(shown.linkage, size, extent), ...[strays, limited].filter((text) => text !== "")];
+    const gait = few && isWalker && moving.cycle.cyclic ? gaitInWords(moving.curve, unit) : "";
+    const plain = [sizeInWords(shown.linkage, size, extent), gait, strays, limited].filter((text) => text !== "");
     // Figures of another path are told as such, and praise nothing.
     const aside = (text: string) => element("span", {}, [elsewhere ? text.replace("the path", "its path") : text]);
     const key = JSON.stringify([elsewhere, texts, graded, plain, marks, shown.accepted, chosen, pinned, isKept]);
@@ -200,8 +203,16 @@ export class Strip {
   }
 
   /** Shows candidates, then what is pinned, each over the target that it was found for; `now`: the task that stands;
-   * `own`: the number of the user's. */
-  show(all: Moving[], solutions: Solution[], found: number, chosen: number, own: number | null, now: Task) {
+   * `own`: the number of the user's; `isWalker`: they are legs. */
+  show(
+    all: Moving[],
+    solutions: Solution[],
+    found: number,
+    chosen: number,
+    own: number | null,
+    now: Task,
+    isWalker: boolean,
+  ) {
     const before = this.shown;
     this.found = found;
     this.shown = all.map((_, i) => (i < found ? this.card(0, i) : this.card(1, i - found)));
@@ -217,7 +228,7 @@ export class Strip {
       const { task } = solutions[i];
       const elsewhere = i < found ? "" : pinnedFor(task, now);
       const isKept = solutions.slice(found).some(({ shown }) => isTheSame(shown, moving.shown));
-      const entry = { moving, task, name, marks: tags, chosen: i === chosen, colour, isKept, elsewhere };
+      const entry = { moving, task, name, marks: tags, chosen: i === chosen, isWalker, colour, isKept, elsewhere };
       this.shown[i].show(entry, all.length <= MANY ? this.part : null);
     });
     if (this.shown.length !== before.length || this.shown.some((card, i) => card !== before[i])) {

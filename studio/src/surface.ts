@@ -31,8 +31,8 @@ export interface Hand {
   marked(): void;
   /** The view has changed. */
   looked(): void;
-  /** Corners of boxes and their words lie at these pixels of the board. */
-  boxed(spots: Point[]): void;
+  /** Corners of boxes and their words, and the linkage lie at these pixels of the board. */
+  drawnAt(marks: Point[], links: Point[]): void;
   /** The closer linkage that is offered is wanted. */
   takeCloser(): void;
 }

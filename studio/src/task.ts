@@ -1,5 +1,6 @@
 // What is asked, kept in step with itself: lists beside the points are as long as the points are many.
 
+import { unitAfter } from "./labels";
 import type { Answer, AnyAsk, Box, Point, Shown, Task } from "./messages";
 import { jams } from "./words";
 
@@ -230,6 +231,20 @@ export function boxOf(points: Point[]): Box | null {
   return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
 }
 
+/** The width and the height of a box. */
+export const sidesOf = ([left, low, right, high]: Box): [number, number] => [right - left, high - low];
+
+/** A box of these sides about the middle of `around`, moved as far as the path needs it. */
+export function boxOfSides(sides: number[], points: Point[], around: Box): Box {
+  const path = boxOf(points) ?? around;
+  const [left, low] = sides.map((side, i) => {
+    const [from, to] = [path[i + 2] - side, path[i]];
+    const asked = (around[i] + around[i + 2] - side) / 2;
+    return from > to ? (from + to) / 2 : Math.min(Math.max(asked, from), to);
+  });
+  return [left, low, left + sides[0], low + sides[1]];
+}
+
 /** How large a target is: the diagonal of its box. */
 export function sizeOf(points: Point[]): number {
   const [left, low, right, high] = boxOf(points) ?? [0, 0, 0, 0];
@@ -317,10 +332,9 @@ export function nearestInstead(task: Task, answer: Answer | null): Instead {
   const isFor = isExact(task) && answer?.doing === "done" && !answer.candidates.some((one) => one.accepted);
   if (!isFor) return null;
   const tolerance = task.tolerance ?? usualTolerance(task);
-  const within = `${tolerance}${task.unit ? ` ${task.unit}` : ""}`;
   return {
     task: { ...task, method: undefined, tolerance },
-    said: `the nearest linkage within ${within} instead of exactly through the points`,
+    said: `the nearest linkage within ${tolerance}${unitAfter(task.unit)} instead of exactly through the points`,
   };
 }
 

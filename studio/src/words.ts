@@ -1,7 +1,7 @@
 // The quality of a linkage in words: how near its curve comes, how well it transmits, how large it is.
 
 import { figure } from "../../src/report/html/player/svg.mjs";
-import { labelOf } from "./labels";
+import { labelOf, unitAfter } from "./labels";
 import type { Box, Point, Shown } from "./messages";
 
 /** How good a figure is; a sign goes with each, for those who see no colour. */
@@ -75,6 +75,27 @@ export function strayInWords(moving: { curve: (Point | null)[] }, points: Point[
   const looked = moving.curve.filter((p, i): p is Point => p !== null && i % EVERY === 0);
   const most = Math.max(0, ...looked.map(far));
   return most > STRAYS * size ? `its curve leaves the path by ${Math.round((100 * most) / size)} %` : "";
+}
+
+/** How a machine walks on two legs half a turn apart, of the curve of a foot over a turn: the lower foot carries, and the
+ * hips are as high above it as the leg makes them. Empty where the crank does not turn on and on. */
+export function gaitInWords(curve: (Point | null)[], unit?: string): string {
+  // The last place is the first.
+  const feet = curve.slice(1);
+  const n = feet.length;
+  const [ground, lifts] = [[] as number[], [] as number[]];
+  let step = 0;
+  for (let i = 0; i < n; i += 1) {
+    const [foot, other, next] = [feet[i], feet[(i + n / 2) % n], feet[(i + 1) % n]];
+    if (!foot || !other || !next) return "";
+    ground.push(Math.min(foot[1], other[1]));
+    lifts.push(foot[1] - other[1]);
+    if (foot[1] < other[1]) step += next[0] - foot[0];
+  }
+  // Each foot makes a step in a turn.
+  const figures = [2 * Math.abs(step), Math.max(...lifts), Math.max(...ground) - Math.min(...ground)];
+  const [stride, lift, bob] = figures.map((length) => figure(length, 3) + unitAfter(unit));
+  return `stride ${stride} a turn, foot lifted ${lift}, hips bob ${bob}`;
 }
 
 /** The limit on which a linkage lies, in words; empty if on none. */

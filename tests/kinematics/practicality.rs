@@ -91,7 +91,7 @@ fn swept(seed: u64, count: u64) -> impl Iterator<Item = (FourBar, Sweep, Build)>
         let mut draws = stream(seed, i);
         let l = linkage(&mut draws, TYPES[(i % 5) as usize]);
         let radius = uniform(&mut draws, 0.02, 0.12) * l.longest_link();
-        let build = Build { plate_radius: radius, pin_radius: 0.4 * radius };
+        let build = Build { plate_radius: radius, pin_radius: 0.4 * radius, motor: None };
         (l, Sweep::of_linkage(&l).expect("it can be joined"), build)
     })
 }
@@ -288,7 +288,7 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
         assert_eq!(sweep.linkage, *l);
         found.stack
     };
-    let slim = Build { plate_radius: 6.0, pin_radius: 3.0 };
+    let slim = Build { plate_radius: 6.0, pin_radius: 3.0, motor: None };
     // The coupler turns around its ground and never comes over it: crank below, follower above, both beside it.
     let l = drag(Complex::new(15.0, 10.0));
     let found = stack(&l, &Sweep::of_linkage(&l).expect("joined"), slim).expect("there is one");
@@ -302,7 +302,7 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
     );
     assert_eq!(found.through, [(Joint::C, 1), (Joint::C, 2)]);
     // With plates so broad that this pin, never more than 30 from B, cannot pass, nothing works.
-    let broad = Build { plate_radius: 24.0, pin_radius: 8.0 };
+    let broad = Build { plate_radius: 24.0, pin_radius: 8.0, motor: None };
     assert_eq!(stack(&l, &Sweep::of_linkage(&l).expect("joined"), broad), None);
     // Over a short motion two layers may do.
     let l = drag(Complex::new(15.0, 10.0));
@@ -310,7 +310,7 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
     short.full_turn = false;
     short.stretches[0].from = 1.9;
     short.stretches[0].to = 2.2;
-    let slimmer = Build { plate_radius: 2.0, pin_radius: 1.0 };
+    let slimmer = Build { plate_radius: 2.0, pin_radius: 1.0, motor: None };
     let found = stack(&l, &short, slimmer).expect("there is one");
     assert_eq!(found.layers.len(), 2, "{found:?}");
     let crank_rocker = FourBar::with_coupler_offset(
@@ -320,7 +320,7 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
         AssemblyMode::Plus,
     )
     .expect("a linkage");
-    let build = Build { plate_radius: 4.0, pin_radius: 2.0 };
+    let build = Build { plate_radius: 4.0, pin_radius: 2.0, motor: None };
     let found = layering(&Sweep::of_linkage(&crank_rocker).expect("joined"), build).expect("closed");
     let stack = found.stack.expect("there is one");
     assert_eq!(stack.layers, [vec![Link::Ground], vec![Link::Crank, Link::Follower], vec![Link::Coupler]]);
@@ -489,9 +489,46 @@ fn a_motion_past_a_toggle_is_split_there() {
                 .to_vec(),
             ..sweep.clone()
         };
-        let build = Build { plate_radius: 0.05 * l.longest_link(), pin_radius: 0.02 * l.longest_link() };
+        let build =
+            Build { plate_radius: 0.05 * l.longest_link(), pin_radius: 0.02 * l.longest_link(), motor: None };
         let one = Workpieces::new(&sweep, build).between_plates(Link::Crank, Link::Follower).expect("closed");
         let all = Workpieces::new(&both, build).between_plates(Link::Crank, Link::Follower).expect("closed");
         assert!(all.value <= one.value + 1e-12 * TAU);
     }
+}
+
+#[test]
+fn a_motor_widens_the_plates_at_its_holes_and_stands_at_a() {
+    let l = FourBar::with_coupler_offset(
+        [Complex::new(0.0, 0.0), Complex::new(80.0, 0.0)],
+        [20.0, 70.0, 50.0],
+        Complex::new(35.0, 30.0),
+        AssemblyMode::Plus,
+    )
+    .expect("a linkage");
+    let sweep = Sweep::of_linkage(&l).expect("joined");
+    let tolerance = 4.0 * MARGIN * l.longest_link();
+    let pins = Build::new(4.0, 3.0);
+    let motor = pins.with_motor(Some(6.0), Some(20.0));
+    let [plain, wide] = [pins, motor].map(|build| layering(&sweep, build).expect("it closes"));
+    // Each distance less by what the two parts have become wider: 1 of the crank and its shaft, 8 of the ground.
+    let wider = |link| match link {
+        Link::Ground => 8.0,
+        Link::Crank => 1.0,
+        Link::Coupler | Link::Follower => 0.0,
+    };
+    let shaft = |pin| if pin == Joint::A { 1.0 } else { 0.0 };
+    for (one, other) in plain.free_pairs.iter().zip(&wide.free_pairs) {
+        let more: f64 = one.plates.iter().map(|link| wider(*link)).sum();
+        assert!((one.closest.value - other.closest.value - more).abs() < tolerance, "{:?}", one.plates);
+    }
+    for (one, other) in plain.pins_plates.iter().zip(&wide.pins_plates) {
+        let more = wider(one.plate) + shaft(one.pin);
+        assert!((one.closest.value - other.closest.value - more).abs() < tolerance, "{one:?} {other:?}");
+    }
+    // One of the two alone: the boss is as the shaft, and a smaller shaft narrows no plate.
+    let thin = pins.with_motor(Some(2.0), None);
+    assert_eq!(thin.motor.map(|motor| motor.boss_radius), Some(1.0));
+    assert_eq!((thin.radius_of(Link::Crank), thin.radius_at(Joint::A)), (5.0, 1.0));
+    assert_eq!(pins.with_motor(None, None), pins);
 }

@@ -1,6 +1,7 @@
 //! `export`: every format in millimetres, closed bodies, hostile names, refusals.
 
 mod dxf;
+mod motor;
 
 use self::dxf::tags;
 use crate::common::root;
@@ -41,6 +42,8 @@ fn subject(linkage: FourBar, unit: Option<Unit>) -> Subject {
         target: vec![[1.0, 2.0], [3.0, 2.5], [4.0, 1.0]],
         closed: true,
         positions: vec![(0.4, AssemblyMode::Plus)],
+        frame_deg: None,
+        body_deg: Vec::new(),
     }
 }
 
@@ -146,24 +149,41 @@ fn plates_on_a_sheet_lie_within_it_and_apart() {
         let size = |svg: &str| {
             let document = roxmltree::Document::parse(svg).expect("XML");
             let side = |name| {
-                let text = document
-                    .root_element()
-                    .attribute(name)
-                    .expect("a size")
-                    .trim_end_matches("mm")
-                    .to_owned();
-                text.parse::<f64>().expect("a number") - 4.0
+                let text = document.root_element().attribute(name).expect("a size").trim_end_matches("mm");
+                text.parse::<f64>().expect("a number")
             };
             (side("width"), side("height"))
         };
+        let boxes = |svg: &str| -> Vec<kurbo::Rect> {
+            let document = roxmltree::Document::parse(svg).expect("XML");
+            let data = document.descendants().filter_map(|node| node.attribute("d"));
+            let path = |data| kurbo::BezPath::from_svg(data).expect("path data");
+            data.map(|data| kurbo::Shape::bounding_box(&path(data))).collect()
+        };
+        // Around the plates the gap is free.
         let (width, height) = size(&text(&subject, Format::SvgPlates, &free));
+        let (width, height) = (width - 4.0, height - 4.0);
         // Less high than one column: in more of them, none wider than the widest plate.
         let room = (4.0 * width + 12.0, 0.97 * height);
         let sheet = format!("{}x{}", room.0, room.1);
         let mut set = free.to_vec();
         set.push(("sheet_mm", sheet.as_str()));
-        let (wide, high) = size(&text(&subject, Format::SvgPlates, &set));
-        assert!(wide <= room.0 && high <= room.1 && wide > width, "{wide} {high} of {room:?}");
+        let svg = text(&subject, Format::SvgPlates, &set);
+        // The page is the sheet: its corner is the layout's.
+        let page = size(&svg);
+        assert!((page.0 - room.0).abs() < 1e-6 && (page.1 - room.1).abs() < 1e-6, "{page:?} of {room:?}");
+        let plates = boxes(&svg);
+        let sheet_at = kurbo::Rect::new(-1e-3, -1e-3, room.0 + 1e-3, room.1 + 1e-3);
+        let all = plates.iter().copied().reduce(|one, other| one.union(other)).expect("plates");
+        assert!(sheet_at.union(all) == sheet_at && all.width() > width + 1.0, "{all:?} of {room:?}");
+        assert!(all.x0.abs() < 1e-3 && (all.y1 - room.1).abs() < 1e-3, "{all:?} of {room:?}");
+        for (i, one) in plates.iter().enumerate() {
+            for other in &plates[..i] {
+                let apart = (one.x0 - other.x1).max(other.x0 - one.x1);
+                let above = (one.y0 - other.y1).max(other.y0 - one.y1);
+                assert!(apart.max(above) > 2.0 - 1e-3, "{one:?} {other:?}");
+            }
+        }
         set[3].1 = "3x2";
         let settings = settings(Format::SvgPlates, &set);
         let refused = export(&subject, Format::SvgPlates, &settings).expect_err("too small");

@@ -344,6 +344,12 @@ pub struct Build {
     /// The holes' diameter, in the file's unit [default: 4 mm, without a unit a fortieth of the longest link; less where holes are near each other]
     #[arg(long, value_name = "D", allow_negative_numbers = true, value_parser = positive)]
     pub hole: Option<f64>,
+    /// The diameter of the crank's hole at A, for the shaft of a motor [default: as the others]
+    #[arg(long, value_name = "D", allow_negative_numbers = true, value_parser = positive)]
+    pub motor_hole: Option<f64>,
+    /// The diameter of the ground's hole at A, for the boss of a motor [default: as that of the crank]
+    #[arg(long, value_name = "D", allow_negative_numbers = true, value_parser = positive)]
+    pub boss_hole: Option<f64>,
     /// Material around a hole [default: as much as its diameter]
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = positive)]
     pub margin: Option<f64>,

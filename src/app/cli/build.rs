@@ -17,7 +17,7 @@ use crate::task::Problem;
 pub fn run(options: &Options) -> Result<Ended, Ended> {
     let made = |linkage: &FourBar, unit: Option<Unit>| {
         let hole = options.hole.unwrap_or_else(|| Build::usual_hole(linkage, unit));
-        Build::new(hole, options.margin.unwrap_or(hole))
+        Build::new(hole, options.margin.unwrap_or(hole)).with_motor(options.motor_hole, options.boss_hole)
     };
     let (title, linkage, unit, practicality) = match result::read(&options.result)? {
         Given::Linkage(file) => {

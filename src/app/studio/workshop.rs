@@ -17,7 +17,7 @@ use zip::CompressionMethod;
 use zip::result::ZipError;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
-/// Sizes as they are typed: `hole_mm`, `margin_mm`, `kerf_mm`, `thickness_mm`, `gap_mm`, `sheet_mm`, `scale`.
+/// Sizes as they are typed: `hole_mm`, `motor_hole_mm`, `boss_hole_mm`, `margin_mm`, `kerf_mm`, `thickness_mm`, `gap_mm`, `sheet_mm`, `scale`.
 pub(super) type Sizes = BTreeMap<String, String>;
 
 /// The files of an archive: what is added to the name, the ending, what it is for, and the format.
@@ -51,7 +51,8 @@ pub(super) fn layers(record: &Record, candidate: &Candidate, sizes: &Sizes) -> R
     let linkage = &candidate.linkage;
     let length = |mm: f64| mm * unit.map_or(1.0, |unit| Unit::Mm.factor_to(unit)) / settings.scale();
     let hole = settings.hole_mm.map_or_else(|| Build::usual_hole(linkage, unit), length);
-    let build = Build::new(hole, settings.margin_mm.map_or(hole, length));
+    let build = Build::new(hole, settings.margin_mm.map_or(hole, length))
+        .with_motor(settings.motor_hole_mm.map(length), settings.boss_hole_mm.map(length));
     let found = Practicality::of_candidate(&problem, candidate, build).ok_or(DetailsError::NotAssembled)?;
     Ok(practicality_text(&found, unit, usual_tolerance(linkage, unit), Colour::Never))
 }
@@ -108,6 +109,8 @@ pub(super) fn archive(
 fn named(key: &str) -> &str {
     match key {
         "hole_mm" => "holes of (mm)",
+        "motor_hole_mm" => "a hole for the motor's shaft of (mm)",
+        "boss_hole_mm" => "a hole for the motor's boss of (mm)",
         "margin_mm" => "material around a hole (mm)",
         "kerf_mm" => "a kerf of (mm)",
         "thickness_mm" => "plates of (mm)",

@@ -12,6 +12,17 @@ pub struct Build {
     pub plate_radius: f64,
     /// The radius of the pins, half a hole.
     pub pin_radius: f64,
+    /// The radii of a motor's shaft and boss at A, if they are not those of a pin.
+    pub motor: Option<Motor>,
+}
+
+/// Radii of the holes for a motor at A.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motor {
+    /// Of the shaft, in the crank.
+    pub shaft_radius: f64,
+    /// Of the boss around it, in the ground.
+    pub boss_radius: f64,
 }
 
 /// Default diameter of a hole, in millimetres, if the unit is known.
@@ -24,7 +35,40 @@ const HOLE_BESIDE: f64 = 1.0 / 3.0;
 impl Build {
     /// Returns the radii for holes of diameter `hole` with material of width `margin` around them.
     pub fn new(hole: f64, margin: f64) -> Self {
-        Build { plate_radius: margin + 0.5 * hole, pin_radius: 0.5 * hole }
+        Build { plate_radius: margin + 0.5 * hole, pin_radius: 0.5 * hole, motor: None }
+    }
+
+    /// Returns the same with holes for a motor at A: of diameter `shaft` in the crank and `boss` in the ground, each by
+    /// default as the one before it.
+    #[must_use]
+    pub fn with_motor(self, shaft: Option<f64>, boss: Option<f64>) -> Self {
+        let shaft_radius = shaft.map_or(self.pin_radius, |shaft| 0.5 * shaft);
+        let boss_radius = boss.map_or(shaft_radius, |boss| 0.5 * boss);
+        let motor = Motor { shaft_radius, boss_radius };
+        Build { motor: (shaft.is_some() || boss.is_some()).then_some(motor), ..self }
+    }
+
+    /// Returns the material around a hole.
+    pub fn margin(&self) -> f64 {
+        self.plate_radius - self.pin_radius
+    }
+
+    /// Returns the radius of a plate: wider than [`Build::plate_radius`] around a motor's hole that is wider than a pin's.
+    pub fn radius_of(&self, link: Link) -> f64 {
+        let hole = match (link, self.motor) {
+            (Link::Ground, Some(motor)) => motor.boss_radius,
+            (Link::Crank, Some(motor)) => motor.shaft_radius,
+            _ => self.pin_radius,
+        };
+        self.plate_radius + (hole - self.pin_radius).max(0.0)
+    }
+
+    /// Returns the radius of what stands at a joint: a pin, or the motor's shaft.
+    pub fn radius_at(&self, pin: Joint) -> f64 {
+        match (pin, self.motor) {
+            (Joint::A, Some(motor)) => motor.shaft_radius,
+            _ => self.pin_radius,
+        }
     }
 
     /// Returns the default diameter of a hole: 4 mm or, if the unit of the lengths is not known, a fortieth of the
@@ -118,7 +162,8 @@ pub struct Workpieces<'a> {
 impl<'a> Workpieces<'a> {
     /// Builds the plates of a linkage in motion.
     pub fn new(sweep: &'a Sweep, build: Build) -> Self {
-        Workpieces { sweep, build, plates: Plate::all(&sweep.linkage, build.plate_radius) }
+        let plates = Link::ALL.map(|link| Plate::of(&sweep.linkage, link, build.radius_of(link)));
+        Workpieces { sweep, build, plates }
     }
 
     fn plate(&self, link: Link) -> &Plate {
@@ -138,7 +183,7 @@ impl<'a> Workpieces<'a> {
     /// Computes the distance between a pin and a plate at a position, below zero if they overlap.
     pub fn pin_to_plate_at(&self, pin: Joint, plate: Link, joints: &Joints) -> f64 {
         let to = pin.at(&self.sweep.linkage, joints);
-        self.plate(plate).distance(&self.placement(plate, joints), to) - self.build.pin_radius
+        self.plate(plate).distance(&self.placement(plate, joints), to) - self.build.radius_at(pin)
     }
 
     /// Computes the least distance between two plates over the motion, below zero if they overlap. `None` if the loop
@@ -158,7 +203,8 @@ impl<'a> Workpieces<'a> {
     pub fn between_pins(&self, one: Joint, other: Joint) -> Option<Closest> {
         let apart = |joints: &Joints| distance(&self.sweep.linkage, one, other, joints);
         let moves = |reach: &Reach| one.moves(reach) + other.moves(reach);
-        closest(self.sweep, |joints| apart(joints) - 2.0 * self.build.pin_radius, moves)
+        let radii = self.build.radius_at(one) + self.build.radius_at(other);
+        closest(self.sweep, |joints| apart(joints) - radii, moves)
     }
 }
 

@@ -8,10 +8,12 @@
 //! delta_m = (delta + delta') / 2 + r c_j,      delta*_m = (delta* + delta*') / 2 + r c*_j
 //! ```
 //!
-//! r the largest |delta' - delta|, c_j and c*_j fixed numbers of modulus about one in general position.
+//! r the largest |delta' - delta|, c_j and c*_j fixed numbers of modulus about one in general position. Of two conjugate
+//! classes one is tracked: the conjugate of its end is the end of the other, or of a path that is found to share it.
 
 use super::certificate::certify;
-use super::settle::{Fate, Fates, Options, firsts, isolated, settle};
+use super::classes::{Class, first_of_class};
+use super::settle::{Fate, Fates, Options, SAME, firsts, isolated, settle};
 use super::solve::{Solved, judged, solve};
 use super::target::{Displacements, STEPS, Solution, Target};
 use super::tracker::{Parameters, Segment};
@@ -41,22 +43,99 @@ pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cance
         .collect();
     let to = target.displacements;
     let middle = midpoint(&from, &to);
-    let quiet = |_: usize, _: usize| {};
-    let legs = Options { parameters: short(&options.parameters), ..*options };
-    let first = settle(&starts, &Segment { from, to: middle }, &legs, &quiet, cancel);
-    let there: Vec<Solution> = isolated(&first.fates).map(|(_, class)| class.solution).collect();
-    let second = settle(&there, &Segment { from: middle, to }, &legs, &quiet, cancel);
-    let ends: Vec<Solution> = isolated(&second.fates).map(|(_, class)| class.solution).collect();
-    let kept =
-        firsts(&ends, |s| certify(target, s)).iter().enumerate().filter(|(at, first)| at == *first).count();
-    let cancelled = cancel.load(Ordering::Relaxed);
-    if kept == previous.classes.len() && kept == previous.census.tracked || cancelled {
-        let lost = starts.len() - there.len();
-        let fates = second.fates.into_iter().chain(std::iter::repeat_n(Fate::Lost, lost)).collect();
-        let ends = Fates { fates, again: first.again + second.again };
-        return Moved { solved: judged(target, &ends, cancelled), kept, fell_back: false };
+    let legs = [Segment { from, to: middle }, Segment { from: middle, to }];
+    let legs = Legs { legs, options: Options { parameters: short(&options.parameters), ..*options }, cancel };
+    let mut kept = 0;
+    for track in [by_halves, one_by_one] {
+        let ends = track(&starts, &legs);
+        let classes: Vec<Solution> = isolated(&ends.fates).map(|(_, class)| class.solution).collect();
+        let first = firsts(&classes, |s| certify(target, s));
+        kept = first.iter().enumerate().filter(|(at, first)| at == *first).count();
+        let cancelled = cancel.load(Ordering::Relaxed);
+        if kept == previous.classes.len() && kept == previous.census.tracked || cancelled {
+            return Moved { solved: judged(target, &ends, cancelled), kept, fell_back: false };
+        }
     }
     Moved { solved: solve(target, options, &quiet, cancel), kept, fell_back: true }
+}
+
+/// No report of the paths that have ended.
+fn quiet(_: usize, _: usize) {}
+
+/// The way from target to target.
+struct Legs<'a> {
+    legs: [Segment; 2],
+    options: Options,
+    cancel: &'a AtomicBool,
+}
+
+impl Legs<'_> {
+    /// Tracks solutions over both legs; gives the fate of each.
+    fn follow(&self, starts: &[Solution]) -> Fates {
+        let [first, second] = &self.legs;
+        let there = settle(starts, first, &self.options, &quiet, self.cancel);
+        let (paths, arrived): (Vec<usize>, Vec<Solution>) =
+            isolated(&there.fates).map(|(path, class)| (path, class.solution)).unzip();
+        let ends = settle(&arrived, second, &self.options, &quiet, self.cancel);
+        let mut fates = vec![Fate::Lost; starts.len()];
+        for (path, fate) in paths.into_iter().zip(ends.fates) {
+            fates[path] = fate;
+        }
+        Fates { fates, again: there.again + ends.again }
+    }
+}
+
+/// Tracks one class of each conjugate pair: both targets are real, so the conjugate of an end is an end. Where it is an
+/// end of another path, as that of two classes that have become real, the other class of the pair is tracked too, until
+/// no two ends are one.
+fn by_halves(starts: &[Solution], legs: &Legs<'_>) -> Fates {
+    let partners = partners(starts);
+    let mut is_tracked = vec![false; starts.len()];
+    let mut ends = Fates { fates: vec![Fate::Lost; starts.len()], again: 0 };
+    let mut open: Vec<usize> = (0..starts.len()).filter(|&path| partners[path] >= path).collect();
+    while !open.is_empty() {
+        let tracked = legs.follow(&open.iter().map(|&path| starts[path]).collect::<Vec<_>>());
+        ends.again += tracked.again;
+        for (&path, fate) in open.iter().zip(tracked.fates) {
+            (ends.fates[path], is_tracked[path]) = (fate, true);
+            let partner = partners[path];
+            if !is_tracked[partner] {
+                ends.fates[partner] = conjugate(fate);
+            }
+        }
+        let (paths, found): (Vec<usize>, Vec<Solution>) =
+            isolated(&ends.fates).map(|(path, class)| (path, class.solution)).unzip();
+        let first = first_of_class(&found, SAME);
+        let shared = (0..paths.len()).filter(|&at| first[at] != at);
+        let pairs =
+            shared.flat_map(|at| [paths[at], paths[first[at]]]).flat_map(|path| [path, partners[path]]);
+        open = pairs.filter(|&path| !is_tracked[path]).collect();
+        open.sort_unstable();
+        open.dedup();
+    }
+    ends
+}
+
+/// Tracks every class by itself.
+fn one_by_one(starts: &[Solution], legs: &Legs<'_>) -> Fates {
+    legs.follow(starts)
+}
+
+fn conjugate(fate: Fate) -> Fate {
+    match fate {
+        Fate::Isolated(class) => Fate::Isolated(Class { solution: class.solution.conjugate(), ..class }),
+        Fate::Singular | Fate::Lost => fate,
+    }
+}
+
+/// Returns for each class the index of the class of its conjugate: its own if it is real, or if none is found.
+fn partners(classes: &[Solution]) -> Vec<usize> {
+    let n = classes.len();
+    let with_conjugates: Vec<Solution> =
+        classes.iter().copied().chain(classes.iter().map(Solution::conjugate)).collect();
+    let first = first_of_class(&with_conjugates, SAME);
+    let partner = |at: usize| Some(first[n + at]).filter(|&other| other < n);
+    (0..n).map(|at| partner(at).filter(|&other| partner(other) == Some(at)).unwrap_or(at)).collect()
 }
 
 /// Returns parameters with long steps, for short ways. A path that goes astray on one ends at the end of another

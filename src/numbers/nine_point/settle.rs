@@ -57,7 +57,7 @@ const SINGULAR_SPEED: f64 = 1e9;
 /// The last part of the way, in t: a path that stops in it has met a singularity of the end, not one of the way.
 const NEAR_THE_END: f64 = 1e-3;
 /// The tolerance within which two solutions are of one class.
-const SAME: f64 = 1e-8;
+pub(super) const SAME: f64 = 1e-8;
 
 /// Classifies the end of a path; `fastest` is the speed above which it counts as singular.
 fn fate(ending: Ending, class: Class, fastest: f64) -> Fate {

@@ -4,9 +4,10 @@ use super::model::{Model, hole_distances};
 use crate::mechanism::plates::{Link, Placement, Plate};
 use crate::report::csv::written;
 use crate::report::text::{cell, exact};
+use std::f64::consts::PI;
 
 /// The columns; there is one row for each plate and pair of its holes.
-const COLUMNS: [&str; 10] = [
+const COLUMNS: [&str; 12] = [
     "plate",
     "holes",
     "from",
@@ -17,6 +18,8 @@ const COLUMNS: [&str; 10] = [
     "width_mm",
     "thickness_mm",
     "area_mm2",
+    "from_hole_mm",
+    "to_hole_mm",
 ];
 
 /// Returns the length and width of the piece of stock: along the line of the first two holes, and across it.
@@ -27,8 +30,9 @@ fn size(plate: &Plate) -> [f64; 2] {
 
 /// Returns the area of the plate without its holes.
 fn area(model: &Model<'_>, plate: &Plate) -> f64 {
-    let hole = std::f64::consts::PI * (0.5 * model.hole).powi(2);
-    plate.area() - hole * plate.distinct_holes().len() as f64
+    let holes = plate.distinct_holes().into_iter();
+    let area = |(joints, _): (String, _)| PI * (0.5 * model.holes.of(plate.link, &joints)).powi(2);
+    plate.area() - holes.map(area).sum::<f64>()
 }
 
 fn number(value: f64) -> String {
@@ -51,8 +55,9 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let mut out = format!("Cut list: {}\n{}\n\n", model.heading(), crate::files::generator::mark());
     let thickness = number(model.thickness);
     out.push_str(&format!(
-        "material {thickness} mm thick, holes {} mm in diameter, {} mm from a hole's edge to the plate's\n\n",
-        number(model.hole),
+        "material {thickness} mm thick, holes {} mm in diameter{}, {} mm from a hole's edge to the plate's\n\n",
+        number(model.holes.pins),
+        model.motor_holes(),
         number(model.margin)
     ));
     let line = |plate: &str, length: &str, width: &str, area: &str, holes: &str| {
@@ -71,12 +76,17 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
         out.push_str(&line(plate.link.name(), &length, &width, &area, &holes.join(", ")));
     }
     let (pins, tracer) = pins(plates);
+    let motor = model.holes.are_for_a_motor();
     out.push_str(&format!(
-        "\n{} plates, {pins} pins of {} mm through at least two plates ({} mm)",
+        "\n{} plates, {} pins of {} mm through at least two plates ({} mm)",
         plates.len(),
-        number(model.hole),
+        pins - usize::from(motor),
+        number(model.holes.pins),
         number(2.0 * model.thickness)
     ));
+    if motor {
+        out.push_str(", a shaft at A");
+    }
     out.push_str(if tracer { ", a pen or a pin at P\n" } else { "; P is on a pin\n" });
     out
 }
@@ -94,7 +104,8 @@ pub(super) fn csv(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
         let count = holes.len();
         pairs.into_iter().map(move |(from, to, apart)| {
             let mut row = vec![plate.link.name().to_owned(), count.to_string(), cell(&from), cell(&to)];
-            let numbers = [apart, model.hole, length, width, model.thickness, area];
+            let of = |joints: &str| model.holes.of(plate.link, joints);
+            let numbers = [apart, model.holes.pins, length, width, model.thickness, area, of(&from), of(&to)];
             row.extend(numbers.into_iter().map(exact));
             row
         })

@@ -26,7 +26,7 @@ pub(super) fn sketch(model: &Model<'_>, joints: &Joints) -> String {
         drawing.polyline("CURVE", &straight(curve), true);
     }
     for at in [a, b, c, d, p] {
-        drawing.circle("JOINTS", at, 0.5 * model.hole);
+        drawing.circle("JOINTS", at, 0.5 * model.holes.pins);
     }
     for at in &model.target {
         drawing.point("TARGET", *at);
@@ -71,11 +71,12 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String
         let contour: Vec<(Complex, f64)> =
             edges.iter().map(|edge| (at.of(edge.from()), edge.bulge())).collect();
         drawing.polyline(layer, &contour, true);
-        for (_, hole) in plate.distinct_holes() {
-            drawing.circle(layer, at.of(hole), model.cut_hole());
+        for (joints, hole) in plate.distinct_holes() {
+            drawing.circle(layer, at.of(hole), model.cut_hole(plate.link, &joints));
         }
         if model.settings.marks() {
-            for stroke in marks(plate, at, (model.hole, model.margin)) {
+            let hole = |joints: &str| model.holes.of(plate.link, joints);
+            for stroke in marks(plate, at, (&hole, model.margin)) {
                 drawing.polyline(MARK, &straight(&stroke), false);
             }
         }
@@ -84,8 +85,9 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String
         mark(),
         model.heading(),
         format!(
-            "holes {} mm, margin {} mm, paths moved outward by half a kerf of {} mm",
-            exact(model.hole),
+            "holes {} mm{}, margin {} mm, paths moved outward by half a kerf of {} mm",
+            exact(model.holes.pins),
+            model.motor_holes(),
             exact(model.margin),
             exact(model.kerf)
         ),

@@ -72,11 +72,32 @@ impl Format {
     /// Returns the name, the kind of the files and the settings that apply.
     fn about(self) -> (&'static str, FileKind, &'static [&'static str]) {
         const DRAWING: &[&str] = &["scale", "unit", "hole_mm", "crank_deg", "samples"];
-        const MARKED: &[&str] =
-            &["scale", "unit", "hole_mm", "margin_mm", "kerf_mm", "gap_mm", "sheet_mm", "marks"];
-        const BODIES: &[&str] =
-            &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm", "gap_mm", "chord_mm", "crank_deg"];
-        const LIST: &[&str] = &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm"];
+        const MARKED: &[&str] = &[
+            "scale",
+            "unit",
+            "hole_mm",
+            "motor_hole_mm",
+            "boss_hole_mm",
+            "margin_mm",
+            "kerf_mm",
+            "gap_mm",
+            "sheet_mm",
+            "marks",
+        ];
+        const BODIES: &[&str] = &[
+            "scale",
+            "unit",
+            "hole_mm",
+            "motor_hole_mm",
+            "boss_hole_mm",
+            "margin_mm",
+            "thickness_mm",
+            "gap_mm",
+            "chord_mm",
+            "crank_deg",
+        ];
+        const LIST: &[&str] =
+            &["scale", "unit", "hole_mm", "motor_hole_mm", "boss_hole_mm", "margin_mm", "thickness_mm"];
         match self {
             Format::Svg => ("svg", FileKind::Svg, DRAWING),
             Format::SvgPlates => ("svg-plates", FileKind::Svg, &MARKED[..MARKED.len() - 1]),

@@ -79,6 +79,9 @@ fn strokes(letter: char) -> &'static [Stroke] {
     }
 }
 
+/// Returns the diameter of a hole by the letters of its joints.
+type Hole<'a> = &'a dyn Fn(&str) -> f64;
+
 /// A word at a place of a plate.
 struct Mark {
     word: String,
@@ -110,10 +113,13 @@ impl Mark {
     }
 
     /// Returns whether it lies on the plate, clear of the edge, of the holes and of other marks.
-    fn fits(&self, plate: &Plate, hole: f64, others: &[Mark]) -> bool {
+    fn fits(&self, plate: &Plate, hole: Hole<'_>, others: &[Mark]) -> bool {
         let clear = CLEAR * self.height;
         self.corners(clear).iter().all(|corner| plate.distance(&Placement::HOME, *corner) <= 0.0)
-            && plate.holes.iter().all(|at| self.distance(at.at) >= 0.5 * hole + clear)
+            && plate
+                .distinct_holes()
+                .iter()
+                .all(|(joints, at)| self.distance(*at) >= 0.5 * hole(joints) + clear)
             && others.iter().all(|other| {
                 // Boxes apart: none has a corner or its centre line near the other.
                 let points = |mark: &Mark| mark.corners(0.0).into_iter().chain([mark.centre]);
@@ -155,9 +161,9 @@ fn largest_that_fits(
 }
 
 /// Returns the strokes of a plate's marks on the sheet: the name of its link and the letters of its holes, as large as
-/// there is room for; what has no room is left out. `hole` is the diameter of the holes, `margin` the material around
-/// them.
-pub(super) fn marks(plate: &Plate, at: &Placement, (hole, margin): (f64, f64)) -> Vec<Vec<Complex>> {
+/// there is room for; what has no room is left out. `hole` gives the diameter of a hole by its letters, `margin` is the
+/// material around them.
+pub(super) fn marks(plate: &Plate, at: &Placement, (hole, margin): (Hole<'_>, f64)) -> Vec<Vec<Complex>> {
     let holes = plate.distinct_holes();
     // Not upside down on the sheet.
     let upright = |along: Complex| if (at.direction * along).re < -1e-9 { -along } else { along };
@@ -190,7 +196,7 @@ pub(super) fn marks(plate: &Plate, at: &Placement, (hole, margin): (f64, f64)) -
                 let mark = Mark { word: word.clone(), centre: *centre, along, height };
                 let [wide, high] = mark.half();
                 let aside = wide * dot(to, along).abs() + high * cross(to, along).abs();
-                Mark { centre: centre + to * (0.5 * hole + 1.5 * CLEAR * height + aside), ..mark }
+                Mark { centre: centre + to * (0.5 * hole(word) + 1.5 * CLEAR * height + aside), ..mark }
             };
             (0..DIRECTIONS).map(mark).collect()
         };
@@ -211,7 +217,7 @@ mod tests {
         for lengths in [[40.0, 20.0, 50.0, 50.0], [400.0, 100.0, 350.0, 300.0], [9.0, 6.0, 10.0, 8.0]] {
             for plate in Plate::all(&linkage(lengths), 0.5 * hole + margin) {
                 let at = Placement::between(Complex::new(3.0, 4.0), Complex::new(-5.0, 10.0));
-                let found = marks(&plate, &at, (hole, margin));
+                let found = marks(&plate, &at, (&|_| hole, margin));
                 for point in found.iter().flatten() {
                     assert!(plate.distance(&at, *point) < 0.0, "{plate:?}");
                     assert!(

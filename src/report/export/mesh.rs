@@ -33,12 +33,13 @@ impl Mesh {
     }
 
     fn with_phase(model: &Model<'_>, plate: &Plate, place: &Placement, phase: f64) -> Option<Self> {
-        let Model { hole, thickness, chord, .. } = *model;
+        let Model { thickness, chord, .. } = *model;
         let mut rings = vec![polygon(&plate.outline(), plate.radius, chord)];
-        for (k, (_, centre)) in plate.distinct_holes().into_iter().enumerate() {
-            let n = sides(0.5 * hole, chord);
+        for (k, (joints, centre)) in plate.distinct_holes().into_iter().enumerate() {
+            let radius = 0.5 * model.holes.of(plate.link, &joints);
+            let n = sides(radius, chord);
             let phase = phase + STAGGER * k as f64;
-            let turn = |i: usize| Complex::from_polar(0.5 * hole, -TAU * (i as f64 + phase) / n as f64);
+            let turn = |i: usize| Complex::from_polar(radius, -TAU * (i as f64 + phase) / n as f64);
             rings.push((0..n).map(|i| centre + turn(i)).collect());
         }
         let flat: Vec<[f64; 2]> = rings.iter().flatten().map(|p| [p.re, p.im]).collect();

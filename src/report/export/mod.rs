@@ -19,6 +19,7 @@ mod cut_list;
 mod drafting;
 mod dxf;
 mod format;
+mod holes;
 #[cfg(feature = "images")]
 mod images;
 mod marks;

@@ -1,9 +1,10 @@
 //! The linkage in millimetres, with all sizes of its plates.
 
+use super::holes::Holes;
 use super::settings::{Refusal, Settings};
 use super::{Format, Subject};
 use crate::mechanism::Unit;
-use crate::mechanism::plates::{Placement, Plate};
+use crate::mechanism::plates::{Link, Placement, Plate};
 use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints, point};
 use crate::report::body;
 use crate::report::scene::{Bounds, circuits_through, middle_position};
@@ -35,7 +36,7 @@ pub(super) struct Model<'a> {
     pub(super) wanted: Vec<Arms>,
     /// The closed paths of P along every circuit that is used.
     pub(super) curves: Vec<Vec<Complex>>,
-    pub(super) hole: f64,
+    pub(super) holes: Holes,
     pub(super) margin: f64,
     pub(super) kerf: f64,
     pub(super) thickness: f64,
@@ -86,7 +87,7 @@ impl<'a> Model<'a> {
             ));
         }
 
-        let (nearest, _) = nearest_holes(&linkage);
+        let nearest = nearest_holes(&linkage);
         let mut default = |key: &'static str, set: Option<f64>, value: f64| {
             set.unwrap_or_else(|| {
                 let value = rounded_down(value);
@@ -101,12 +102,14 @@ impl<'a> Model<'a> {
         let thickness = default("thickness_mm", settings.thickness_mm, 0.75 * hole);
         let gap = default("gap_mm", settings.gap_mm, margin) + kerf;
         let chord = default("chord_mm", settings.chord_mm, CHORD_SHARE * hole);
-        if kerf >= hole {
+        let holes = Holes::new(hole, settings);
+        let (smallest, least) = holes.smallest();
+        if kerf >= least {
             return Err(Refusal::about(
                 settings,
                 "kerf_mm",
-                format!("a kerf of {} mm leaves nothing to cut of holes of {} mm", exact(kerf), exact(hole)),
-                "choose kerf_mm below hole_mm",
+                format!("a kerf of {} mm leaves nothing to cut of holes of {} mm", exact(kerf), exact(least)),
+                format!("choose kerf_mm below {smallest}"),
             ));
         }
         // A body that only turns has no size of its own.
@@ -126,7 +129,7 @@ impl<'a> Model<'a> {
             target,
             wanted,
             curves,
-            hole,
+            holes,
             margin,
             kerf,
             thickness,
@@ -206,17 +209,9 @@ impl<'a> Model<'a> {
     /// Returns the four plates in their final sizes, each with its place in the layout (with room for the kerf): one
     /// below another, on a sheet in as many columns as that takes. The tool's paths begin at the sheet's corner.
     pub(super) fn plates(&self) -> Result<Vec<(Plate, Placement)>, Refusal> {
-        let (nearest, crowd) = nearest_holes(&self.linkage);
-        if self.hole >= nearest {
-            let (hole, apart) = (exact(self.hole), brief(nearest, 3));
-            return Err(Refusal::about(
-                self.settings,
-                "hole_mm",
-                format!("holes of {hole} mm run into each other: {crowd} are {apart} mm apart"),
-                format!("choose hole_mm below {apart}, or a larger scale"),
-            ));
-        }
-        let plates = Plate::all(&self.linkage, 0.5 * self.hole + self.margin);
+        self.holes.check(&self.linkage, self.settings)?;
+        let plates =
+            Link::ALL.map(|link| Plate::of(&self.linkage, link, self.holes.radius(link, self.margin)));
         let sizes: Vec<Complex> = plates.iter().map(|plate| plate.bounds()[1] - plate.bounds()[0]).collect();
         let corners = match self.settings.sheet_mm {
             None => in_columns(&sizes, self.gap, f64::INFINITY),
@@ -268,9 +263,18 @@ impl<'a> Model<'a> {
         plate.with_radius(plate.radius + 0.5 * self.kerf)
     }
 
-    /// Returns the radius of a hole along which the tool's centre moves.
-    pub(super) fn cut_hole(&self) -> f64 {
-        0.5 * (self.hole - self.kerf)
+    /// Returns the radius of a hole of a plate along which the tool's centre moves; `joints` are the hole's letters.
+    pub(super) fn cut_hole(&self, link: Link, joints: &str) -> f64 {
+        0.5 * (self.holes.of(link, joints) - self.kerf)
+    }
+
+    /// Returns the sizes of the holes at A, if they are for a motor, with a comma before them.
+    pub(super) fn motor_holes(&self) -> String {
+        let Holes { motor, boss, .. } = self.holes;
+        if !self.holes.are_for_a_motor() {
+            return String::new();
+        }
+        format!(", at A {} mm in the crank and {} mm in the ground", exact(motor), exact(boss))
     }
 }
 
@@ -329,15 +333,10 @@ pub(super) fn hole_distances(plate: &Plate) -> Vec<(String, String, f64)> {
     pairs
 }
 
-/// Returns the distance of the nearest two distinct holes of one plate, and their names.
-fn nearest_holes(linkage: &FourBar) -> (f64, String) {
-    let named = |plate: Plate| {
-        hole_distances(&plate)
-            .into_iter()
-            .map(move |(from, to, apart)| (apart, format!("{from} and {to} of the {}", plate.link.name())))
-    };
-    let all = Plate::all(linkage, 0.0).into_iter().flat_map(named);
-    all.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or((f64::INFINITY, String::new()))
+/// Returns the distance of the nearest two distinct holes of one plate.
+fn nearest_holes(linkage: &FourBar) -> f64 {
+    let all = Plate::all(linkage, 0.0).into_iter().flat_map(|plate| hole_distances(&plate));
+    all.map(|(_, _, apart)| apart).fold(f64::INFINITY, f64::min)
 }
 
 /// Returns the largest number of two significant digits that is not larger than a value.

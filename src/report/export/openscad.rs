@@ -19,7 +19,7 @@ pub(super) fn script(model: &Model<'_>) -> Result<String, Refusal> {
     let p = model.linkage.natural_coordinates();
     let offset = model.linkage.coupler_offset();
     let numbers = [
-        ("hole", model.hole, "diameter of every hole"),
+        ("hole", model.holes.pins, "diameter of the holes"),
         ("margin", model.margin, "from a hole's edge to the edge of the plate"),
         ("thickness", model.thickness, "thickness of the plates"),
         ("gap", model.gap, "between plates that are laid out"),
@@ -42,6 +42,13 @@ pub(super) fn script(model: &Model<'_>) -> Result<String, Refusal> {
         let about = if about.is_empty() { String::new() } else { format!(" // {about}") };
         out.push_str(&format!("{name} = {};{about}\n", exact(value + 0.0)));
     }
+    let own = |set: Option<f64>, usual: &str| set.map_or(usual.to_owned(), exact);
+    let (motor, boss) = (model.settings.motor_hole_mm, model.settings.boss_hole_mm);
+    out.push_str(&format!(
+        "motor_hole = {}; // of the crank at A, for a motor's shaft\n",
+        own(motor, "hole")
+    ));
+    out.push_str(&format!("boss_hole = {}; // of the ground at A, for its boss\n", own(boss, "motor_hole")));
     debug_assert_eq!(layout.len(), 4);
     out.push_str(BODY);
     Ok(out)
@@ -53,23 +60,26 @@ A = [Ax, Ay];
 B = [Bx, By];
 g = norm(B - A);
 P = [Px, Py];
-r = hole / 2 + margin;
 washer = thickness / 10; // between the layers of the assembly
 function sides(radius) = max(24, min(720, ceil(180 / max(0.25, acos(max(0, 1 - chord / radius))))));
 
-// A plate: the hull of its holes grown by the radius r, holes taken out.
-module plate(holes) {
+// A plate: the hull of its holes grown by a radius r, holes taken out. A hole is x, y and its diameter.
+function radius(largest) = max(hole, largest) / 2 + margin;
+module plate(holes, r) {
     difference() {
         linear_extrude(thickness) hull()
-            for (h = holes) translate(h) circle(r = r, $fn = sides(r));
+            for (h = holes) translate([h.x, h.y]) circle(r = r, $fn = sides(r));
         for (h = holes) translate([h.x, h.y, -thickness])
-            cylinder(d = hole, h = 3 * thickness, $fn = sides(hole / 2));
+            cylinder(d = h.z, h = 3 * thickness, $fn = sides(h.z / 2));
     }
 }
-module ground() plate([[0, 0], [g, 0]]);
-module crank() plate([[0, 0], [a, 0]]);
-module coupler() plate([[0, 0], [b, 0], P]);
-module follower() plate([[0, 0], [c, 0]]);
+r = radius(hole);
+r_ground = radius(boss_hole);
+r_crank = radius(motor_hole);
+module ground() plate([[0, 0, boss_hole], [g, 0, hole]], r_ground);
+module crank() plate([[0, 0, motor_hole], [a, 0, hole]], r_crank);
+module coupler() plate([[0, 0, hole], [b, 0, hole], [P.x, P.y, hole]], r);
+module follower() plate([[0, 0, hole], [c, 0, hole]], r);
 
 // Where the joints are: C on the crank, D = C + V (u + i t1 sqrt k) with V = B - C.
 C = A + a * [cos(crank_deg), sin(crank_deg)];
@@ -92,10 +102,11 @@ if (view == "assembly") {
     color("steelblue") place(C, D, 2) coupler();
     color("seagreen") place(B, D, 3) follower();
 } else {
+    above = 2 * r_ground + 2 * r_crank + 2 * gap;
     bottom = r - min(0, P.y);
-    translate([r, r, 0]) ground();
-    translate([r, 3 * r + gap, 0]) crank();
-    translate([r - min(0, P.x), 4 * r + 2 * gap + bottom, 0]) coupler();
-    translate([r, 6 * r + 3 * gap + bottom + max(0, P.y), 0]) follower();
+    translate([r_ground, r_ground, 0]) ground();
+    translate([r_crank, 2 * r_ground + gap + r_crank, 0]) crank();
+    translate([r - min(0, P.x), above + bottom, 0]) coupler();
+    translate([r, above + bottom + max(0, P.y) + 2 * r + gap, 0]) follower();
 }
 "#;

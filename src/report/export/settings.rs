@@ -42,8 +42,12 @@ pub struct Settings {
     pub scale: Option<f64>,
     /// The unit of the lengths, if the file has none.
     pub unit: Option<Unit>,
-    /// The diameter of every hole, in mm.
+    /// The diameter of every hole that has no size of its own, in mm.
     pub hole_mm: Option<f64>,
+    /// The diameter of the crank's hole at A, for the shaft of a motor, in mm; as the others by default.
+    pub motor_hole_mm: Option<f64>,
+    /// The diameter of the ground's hole at A, for the boss of a motor, in mm; by default as that of the crank.
+    pub boss_hole_mm: Option<f64>,
     /// The distance from a hole's edge to the edge of the plate, in mm.
     pub margin_mm: Option<f64>,
     /// The width of the cut that the tool takes away, in mm: outlines grow by half of it, holes shrink.
@@ -103,6 +107,8 @@ impl Settings {
         match key {
             "scale" => self.scale = Some(number(key, value, POSITIVE)?),
             "hole_mm" => self.hole_mm = Some(number(key, value, POSITIVE)?),
+            "motor_hole_mm" => self.motor_hole_mm = Some(number(key, value, POSITIVE)?),
+            "boss_hole_mm" => self.boss_hole_mm = Some(number(key, value, POSITIVE)?),
             "thickness_mm" => self.thickness_mm = Some(number(key, value, POSITIVE)?),
             "chord_mm" => self.chord_mm = Some(number(key, value, POSITIVE)?),
             "margin_mm" => self.margin_mm = Some(number(key, value, POSITIVE)?),

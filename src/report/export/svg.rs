@@ -117,7 +117,7 @@ pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
         all.chain(model.curves.iter().flatten().copied()).chain(model.target.iter().copied()).collect();
     let bare = Page::around(all.iter().copied(), 0.0).size();
     let extent = bare.re.max(bare.im);
-    let mut page = Page::around(all, 0.04 * extent + model.hole);
+    let mut page = Page::around(all, 0.04 * extent + model.holes.pins);
     let (thin, thick, letter) = (mm(0.002 * extent), mm(0.004 * extent), 0.03 * extent);
     let group = |id: &str, rest: &str| format!(r#"<g id="{id}" {rest} stroke-linejoin="round">"#);
     let line = |colour: &str, width: &str| {
@@ -138,7 +138,7 @@ pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
     page.push(&group("joints", &line(LINKS, &thin)));
     let named = [("A", a), ("B", b), ("C", c), ("D", d), ("P", p)];
     for (name, at) in named {
-        page.circle(name, at, 0.5 * model.hole);
+        page.circle(name, at, 0.5 * model.holes.pins);
     }
     page.push("</g>");
     if !model.target.is_empty() {
@@ -156,17 +156,19 @@ pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
         page.path(&frame, false, "");
         page.push("</g>");
     }
-    let aside = 0.5 * model.hole + 0.2 * letter;
+    let aside = 0.5 * model.holes.pins + 0.2 * letter;
     let label = |(name, at): (&str, Complex)| (at + Complex::new(aside, aside), name.to_owned());
     page.labels(letter, "", named.map(label));
     page.document(&model.subject.title(), &model.heading())
 }
 
-/// Draws the plates side by side, each in its own group.
+/// Draws the plates side by side, each in its own group; the page is the sheet, if there is one.
 pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let corners = plates.iter().flat_map(|(plate, at)| model.cut(plate).bounds().map(|corner| at.of(corner)));
-    let corners: Vec<Complex> = corners.collect();
-    let mut page = Page::around(corners, model.gap);
+    let mut page = match model.settings.sheet_mm {
+        Some([width, height]) => Page::around([Complex::default(), Complex::new(width, height)], 0.0),
+        None => Page::around(corners, model.gap),
+    };
     let size = page.size();
     let thin = mm(0.001 * size.re.max(size.im));
     for (plate, at) in plates {
@@ -175,14 +177,16 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String
         let edges: Vec<Edge> = model.cut(plate).outline().iter().map(|edge| edge.placed(at)).collect();
         page.outline(&edges);
         for (joints, hole) in plate.distinct_holes() {
-            page.circle(&format!("{name}-{joints}"), at.of(hole), model.cut_hole());
+            page.circle(&format!("{name}-{joints}"), at.of(hole), model.cut_hole(plate.link, &joints));
         }
         page.push("</g>");
     }
     let letter = (0.6 * model.margin).min(0.05 * size.re.max(size.im));
-    let above = Complex::new(0.0, 0.5 * model.hole + 0.25 * letter);
     let holes = plates.iter().flat_map(|(plate, at)| {
-        plate.distinct_holes().into_iter().map(|(joints, hole)| (at.of(hole) + above, joints))
+        plate.distinct_holes().into_iter().map(|(joints, hole)| {
+            let above = 0.5 * model.holes.of(plate.link, &joints) + 0.25 * letter;
+            (at.of(hole) + Complex::new(0.0, above), joints)
+        })
     });
     page.labels(letter, r#" text-anchor="middle""#, holes);
     let heading = format!("{}, plates cut with a kerf of {} mm", model.heading(), mm(model.kerf));
