@@ -40,6 +40,15 @@ pub struct PointsFile {
     pub warnings: Vec<Diagnostic>,
 }
 
+/// Returns whether a file has a column of body angles, so that its rows are poses. An unreadable file is left to the
+/// diagnostics of [`load`], and a pipe, which can be read only once.
+pub fn holds_poses(path: &Path) -> bool {
+    let text = if path.is_file() { input_text::read(path).unwrap_or_default() } else { String::new() };
+    let text = input_text::without_mark(&text);
+    let header = Rows::new("", text).header().ok().flatten();
+    header.is_some_and(|header| header.cells.iter().any(|cell| cell.eq_ignore_ascii_case(COLUMNS[ANGLE])))
+}
+
 /// Reads the points of a file.
 ///
 /// # Errors

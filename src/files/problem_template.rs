@@ -1,4 +1,5 @@
-//! A commented problem file to start from: it can be run as it is, and is written for a user with a motor and a path.
+//! A commented problem file to start from: it can be run as it is, and is written for a user with a motor and a path, or
+//! with a body that is to pass poses.
 
 use crate::files::name;
 use crate::files::name::NameError;
@@ -17,14 +18,73 @@ closed = true                   # the path ends where it begins
 tolerance = 0.5                 # the largest error accepted at any point; remove to take the best there is
 ";
 
-/// Returns the text of a problem file called `name`, with sample points or with those of a CSV file or an SVG drawing
-/// (according to the name's ending) in the same folder.
+/// The poses of a lid that a four-bar of usual proportions opens.
+const SAMPLE_POSES: &str = "\
+# The poses to pass, in order: where a point of the body is to be, and the body's angle in degrees, counter-clockwise
+# positive. A row of two numbers asks for the place alone. Many poses: file = \"poses.csv\" (columns x,y,angle_deg).
+# Here a lid, told by its front edge: shut, lifted, and open above the box.
+poses = [
+    POSES
+]
+closed = false                  # true: the motion returns to the first pose
+tolerance = 2                   # the largest error of the place accepted at any pose; remove to take the best there is
+tolerance_deg = 1               # and of the angle
+# angle_weight = 300            # a length: an angle error of one radian counts like it; where silent, the target's size
+# weight = [1, 1, 1, 1, 5]      # one a pose: the last counts five times
+";
+
+/// The task of a template.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TemplateTask {
+    /// A path to trace.
+    Path,
+    /// Poses that a body is to pass.
+    Motion,
+}
+
+/// Returns the text of a problem file called `name` for a task, with sample targets or with those of a CSV file or, for a
+/// path, of an SVG drawing (according to the name's ending) in the same folder.
 ///
 /// # Errors
 /// [`NameError`] if the name is not valid.
-pub fn problem_template(name: &str, points_file: Option<&str>) -> Result<String, NameError> {
+pub fn problem_template(name: &str, task: TemplateTask, from: Option<&str>) -> Result<String, NameError> {
     name::check(name)?;
-    let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
+    match task {
+        TemplateTask::Path => Ok(path_template(name, from)),
+        TemplateTask::Motion => Ok(motion_template(name, from)),
+    }
+}
+
+/// Returns a name as a value.
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+/// Returns the requirements, each with its comment.
+fn requirements() -> String {
+    RequirementKind::all().iter().map(|kind| kind.definition().template).collect()
+}
+
+fn motion_template(name: &str, poses_file: Option<&str>) -> String {
+    let poses = match poses_file {
+        None => SAMPLE_POSES.to_owned(),
+        Some(file) => format!(
+            "# The poses to pass, in order: columns x,y,angle_deg (an empty cell asks for the place alone) and optionally\n\
+             # weight, tolerance, tolerance_deg.\n\
+             file = {}\n\
+             closed = false                  # true: the motion returns to the first pose\n\
+             # tolerance = 2                 # the largest error of the place accepted at any pose\n\
+             # tolerance_deg = 1             # and of the angle\n\
+             # angle_weight = 300            # a length: an angle error of one radian counts like it\n",
+            quoted(file)
+        ),
+    };
+    let head = HEAD.replace("NAME", &quoted(name)).replace("[task.path]", "[task.motion]");
+    let head = head.replace("where the points come from", "where the poses come from");
+    head + &poses + DESIGN + BODY + REQUIRE + &requirements() + SOLVE + END
+}
+
+fn path_template(name: &str, points_file: Option<&str>) -> String {
     let is_drawing = points_file.is_some_and(|file| is_drawing(Path::new(file)));
     let points = match points_file {
         None => SAMPLE_POINTS.to_owned(),
@@ -50,8 +110,17 @@ pub fn problem_template(name: &str, points_file: Option<&str>) -> Result<String,
     // A drawing may state its unit itself.
     let head =
         if is_drawing { HEAD.replace("\nunit = \"mm\" ", "\n# unit = \"mm\"") } else { HEAD.to_owned() };
-    let required: String = RequirementKind::all().iter().map(|kind| kind.definition().template).collect();
-    Ok(head.replace("NAME", &quoted(name)) + &points + TAIL + &required + SEARCH)
+    head.replace("NAME", &quoted(name))
+        + &points
+        + TIMING
+        + DESIGN
+        + POINT
+        + REQUIRE
+        + &requirements()
+        + SOLVE
+        + METHODS
+        + END
+        + PROOF
 }
 
 const HEAD: &str = "\
@@ -67,13 +136,15 @@ unit = \"mm\"                     # mm, cm, m or in: labels lengths, scales draw
 [task.path]
 ";
 
-const TAIL: &str = r#"
+const TIMING: &str = r#"
 # Does it matter at which crank angle each point is passed? One angle a point, counter-clockwise positive.
 # [task.path.timing]
 # crank_deg = [0, 30, 60]
 # offset = "free"               # only the increments count; "fixed": from the x axis; "ground": from A to B
+"#;
 
-# Where the linkage may be. A number fixes, [min, max] bounds; what is silent is set from the path's size.
+const DESIGN: &str = r#"
+# Where the linkage may be. A number fixes, [min, max] bounds; what is silent is set from the target's size.
 [design]
 # A = [0, 0]                    # pivot of the crank: where the motor sits
 # B = [[50, 200], [-50, 50]]    # pivot of the follower: x between 50 and 200, y between -50 and 50
@@ -81,26 +152,46 @@ const TAIL: &str = r#"
 # b = [20, 200]                 # coupler
 # c = [20, 200]                 # follower
 # ground = [50, 200]            # from A to B
-# coupler_x = [-100, 200]       # the tracing point along the coupler, from the crank's pin
-# coupler_y = [-100, 100]       # and across it
-
-# What an answer must satisfy.
-[require]
 "#;
 
-const SEARCH: &str = r#"
+/// The tracing point on the coupler.
+const POINT: &str = "\
+# coupler_x = [-100, 200]       # the tracing point along the coupler, from the crank's pin
+# coupler_y = [-100, 100]       # and across it
+";
+
+/// The body's point on the coupler.
+const BODY: &str = "\
+# coupler_x = [-500, 500]       # the body's point along the coupler, from the crank's pin
+# coupler_y = [-500, 500]       # and across it
+";
+
+const REQUIRE: &str = "
+# What an answer must satisfy.
+[require]
+";
+
+const SOLVE: &str = r#"
 # How to search.
 [solve]
 candidates = 5                  # how many different answers
 seed = 1                        # the same seed gives the same answers; another one may give others
 # objective = "max-deviation"   # the least largest error; where silent, the least sum of squared errors
-# method = "differential-evolution"   # or "genetic", "least-squares"; where silent, "auto" chooses
+"#;
+
+/// The methods of a path.
+const METHODS: &str = r#"# method = "differential-evolution"   # or "genetic", "least-squares"; where silent, "auto" chooses
 # variables = "reduced"         # for the first two of these; where silent, the literature's "nine"
-# evaluations = 200000          # how long to search
+"#;
+
+const END: &str = r#"# evaluations = 200000          # how long to search
 # time_limit_s = 60             # seconds at most; a run that it ends cannot be repeated to the digit
 # advice = false                # the answers alone: not what conflicts, what to build or what limits cost
 # picks_within = 1.5            # the smallest and the best transmitting linkage have at most this many times the least error
-# certify = true                # with crank angles: prove afterwards how little better any linkage could be
+"#;
+
+/// The proof of prescribed timing.
+const PROOF: &str = r#"# certify = true                # with crank angles: prove afterwards how little better any linkage could be
 # [certify]
 # gap = 1e-4                    # until that part of the best sum is left open
 # time_limit_s = 300            # or this time is over

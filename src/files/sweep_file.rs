@@ -302,9 +302,10 @@ fn check(
                 None => diagnostic,
             }));
         }
-        if let ("task.path.file" | "task.path.svg", Some(file)) = (key.as_str(), value.as_str()) {
-            let last = key.rsplit('.').next().unwrap_or_default();
-            template.add_named(problem, last, file).map_err(|d| {
+        if let ("task.path.file" | "task.path.svg" | "task.motion.file", Some(file)) =
+            (key.as_str(), value.as_str())
+        {
+            template.add_named(problem, key, file).map_err(|d| {
                 let help = d.help.unwrap_or_else(|| "it is looked for beside the problem file".into());
                 Box::new(toml.at_path(&place, d.message).with_help(help))
             })?;

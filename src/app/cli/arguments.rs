@@ -11,11 +11,11 @@ use crate::synthesis::front::FrontRequest;
 use crate::synthesis::snap::Length;
 use crate::task::spec::{CertifySpec, MAX_CERTIFY_S};
 use clap::builder::RangedI64ValueParser;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Finds the four-bar linkage whose coupler point draws the path you ask for.
+/// Finds the four-bar linkage whose coupler point draws the path you ask for, or that takes a body through your poses.
 #[derive(Debug, Parser)]
 #[command(
     name = "linkwright",
@@ -190,12 +190,26 @@ pub struct Check {
 pub struct New {
     /// The problem's name; NAME.toml is written here
     pub name: String,
-    /// Take the target from these points (CSV) or this drawing (SVG)
+    /// Take the target from these points or poses (CSV) or this drawing (SVG)
     #[arg(long, value_name = "FILE")]
     pub from: Option<PathBuf>,
+    /// What the linkage is to do [default: motion where FILE has a column angle_deg, else path]
+    #[arg(long, value_enum)]
+    pub task: Option<NewTask>,
     /// Replace a file that is there even where linkwright did not write it, or where this command reads it
     #[arg(long)]
     pub force: bool,
+}
+
+/// The task of a new problem file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum NewTask {
+    /// A point traces a path
+    Path,
+    /// A body passes poses: places with angles
+    Motion,
+    /// An angle for each angle of the crank: not supported yet
+    Function,
 }
 
 /// Options of `compare`.

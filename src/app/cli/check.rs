@@ -30,7 +30,7 @@ pub fn run(options: &Check) -> Result<Ended, Ended> {
 fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
         let points = points_file::load(path)?;
-        return Ok((format!("{} points", points.points.len()), points.warnings));
+        return Ok((targets(points.points.len(), points.angle_deg.as_deref()), points.warnings));
     }
     if problem_file::is_drawing(path) {
         let file = problem_file::from_points_file(path, &[])?;
@@ -69,9 +69,19 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
     let file = problem_file::load(path, &[])?;
     let target = &file.spec.task;
     let timing = if target.timing.is_some() { "prescribed" } else { "free" };
-    let summary =
-        format!("problem {}: {} points, {timing} timing, runs as it is", file.name, target.points.len());
-    Ok((summary, file.warnings))
+    let angles = target.body.as_ref().map(|body| &body.angle_deg[..]);
+    let counted = targets(target.points.len(), angles);
+    Ok((format!("problem {}: {counted}, {timing} timing, runs as it is", file.name), file.warnings))
+}
+
+/// Returns the number of a path's points, or of a motion's poses and of the places among them.
+fn targets(count: usize, angles: Option<&[Option<f64>]>) -> String {
+    let Some(angles) = angles else { return format!("{count} points") };
+    let poses = angles.iter().flatten().count();
+    match count - poses {
+        0 => counted(poses, "pose"),
+        places => format!("{} and {}", counted(poses, "pose"), counted(places, "place")),
+    }
 }
 
 /// Returns whether a file has one of the tables that only a linkage file has. An unreadable file is left to the problem

@@ -1,12 +1,13 @@
 //! `new`: a problem file to start from.
 
-use super::arguments::New;
+use super::arguments::{New, NewTask};
 use super::{Ended, refuse, refuse_at, terminal};
 use crate::app::job::folder::{OutputFile, Replace, write_files};
+use crate::files::diagnostic::quoted;
 use crate::files::generator::FileKind;
 use crate::files::name;
-use crate::files::problem_file::{from_points_file, parse};
-use crate::files::problem_template::problem_template;
+use crate::files::problem_file::{from_points_file, holds_poses, is_drawing, parse};
+use crate::files::problem_template::{TemplateTask, problem_template};
 use std::path::{Path, PathBuf};
 
 /// Runs the command.
@@ -14,6 +15,7 @@ pub fn run(options: &New) -> Result<Ended, Ended> {
     let name = options.name.strip_suffix(".toml").unwrap_or(&options.name);
     let not_a_name = |e: name::NameError| refuse(format!("{e}: {}", e.remedy()));
     name::check(name).map_err(not_a_name)?;
+    let task = task_of(options)?;
     // The file that is named has to be a target before a problem file may point at it.
     if let Some(from) = &options.from {
         from_points_file(from, &[]).map_err(refuse_at)?;
@@ -24,7 +26,7 @@ pub fn run(options: &New) -> Result<Ended, Ended> {
         let inside = here.as_deref().and_then(|here| path.strip_prefix(here).ok());
         inside.unwrap_or(path).display().to_string()
     });
-    let text = problem_template(name, from.as_deref()).map_err(not_a_name)?;
+    let text = problem_template(name, task, from.as_deref()).map_err(not_a_name)?;
     let path = PathBuf::from(format!("{name}.toml"));
     let shown = path.display();
     // A written file must run: a points file in another folder cannot be reached from the problem file.
@@ -34,4 +36,29 @@ pub fn run(options: &New) -> Result<Ended, Ended> {
     write_files(&[file], replace).map_err(refuse)?;
     terminal::answer(&format!("Wrote {shown}. Next: linkwright synth {shown:?}\n"));
     Ok(Ended::Good)
+}
+
+/// Returns the task that is asked for; where it is silent, a file of poses makes a motion.
+fn task_of(options: &New) -> Result<TemplateTask, Ended> {
+    let from = options.from.as_deref();
+    let poses = from.is_some_and(holds_poses);
+    match options.task {
+        Some(NewTask::Function) => {
+            Err(refuse("functions are not supported yet: write --task path or --task motion"))
+        }
+        Some(NewTask::Path) => Ok(TemplateTask::Path),
+        None if !poses => Ok(TemplateTask::Path),
+        None => Ok(TemplateTask::Motion),
+        Some(NewTask::Motion) => match from.filter(|path| !poses && path.is_file()) {
+            None => Ok(TemplateTask::Motion),
+            Some(path) if is_drawing(path) => Err(refuse(format!(
+                "{} is a drawing, which has no angles of a body: write the poses as a CSV with the columns x,y,angle_deg",
+                quoted(&path.display().to_string())
+            ))),
+            Some(path) => Err(refuse(format!(
+                "{} has no column angle_deg: add it; an empty cell asks for the place alone",
+                quoted(&path.display().to_string())
+            ))),
+        },
+    }
 }

@@ -23,6 +23,7 @@ use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::input_text;
 use crate::files::linkage_file::{check_format, checked_name};
 use crate::files::name;
+use crate::files::points_file;
 use crate::files::toml_text::TomlText;
 use crate::files::toml_values::{Count, OnlyTable};
 use crate::mechanism::Unit;
@@ -180,12 +181,13 @@ fn parse_at(
     let (certify, in_vain) = certify::of(&toml, asked, raw.certify.map(|table| table.0), &path)?;
     solve.certify = certify;
     warnings.extend(in_vain);
+    method_of(&toml, &path, solve.method)?;
     if solve.objective == Objective::MaxDeviation {
         warnings.extend(deviation_of(&toml, &path)?);
     }
     let expect = raw.expect.map(|OnlyTable(expect)| expect);
     if let Some(expect) = &expect {
-        expect::check(&toml, expect, path.points.len())?;
+        expect::check(&toml, expect, &path)?;
     }
     design.resolve(&task);
     let spec = ProblemSpec { task: path, design, require, solve };
@@ -220,7 +222,7 @@ fn task_of(
     }
 }
 
-/// Reads a bare file of points, or a bare drawing, as a problem with every default; its name is the file's.
+/// Reads a bare file of points or poses, or a bare drawing, as a problem with every default; its name is the file's.
 ///
 /// # Errors
 /// A [`Diagnostic`] that points at the fault.
@@ -230,16 +232,25 @@ pub fn from_points_file(path: &Path, overrides: &[(String, String)]) -> Result<P
         let diagnostic = Diagnostic::new(shown, "", "the name of this file is not text");
         return Err(Box::new(diagnostic.with_help("rename the file")));
     };
-    let text = text_about(file);
+    // Keys of a path that are set on the command line ask for a path through the places.
+    let asks_for_path = overrides.iter().any(|(key, _)| key.starts_with("task.path."));
+    let text = text_about(file, !asks_for_path && holds_poses(path));
     let whereabouts = Whereabouts { folder: Some(folder_of(path)), anywhere: true, beside: &[] };
     parse_at(&shown, &text, &whereabouts, overrides)
 }
 
-/// Returns the text of a problem file whose target is a points file or a drawing and that states nothing else.
-fn text_about(target: &str) -> String {
+/// Returns whether a bare target holds poses: a CSV with the column angle_deg.
+pub fn holds_poses(path: &Path) -> bool {
+    !is_drawing(path) && points_file::holds_poses(path)
+}
+
+/// Returns the text of a problem file whose target is a points file, a file of poses or a drawing and that states nothing
+/// else.
+fn text_about(target: &str, poses: bool) -> String {
+    let task = if poses { "motion" } else { "path" };
     let key = if is_drawing(Path::new(target)) { "svg" } else { "file" };
     let value = toml::Value::String(target.to_owned());
-    format!("format = {FORMAT}\n[task.path]\n{key} = {value}\n")
+    format!("format = {FORMAT}\n[task.{task}]\n{key} = {value}\n")
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -323,6 +334,18 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Checked<SolveSpec> {
         genetic,
         differential_evolution,
     })
+}
+
+/// Checks that a method searches for poses, in a motion.
+fn method_of(toml: &TomlText<'_>, task: &TaskSpec, method: Method) -> Checked<()> {
+    match method {
+        Method::Genetic | Method::DifferentialEvolution if task.body.is_some() => toml.refuse(
+            "solve.method",
+            format!("method = \"{}\" is not supported for poses yet", method.name()),
+            "write method = \"auto\" or \"least-squares\"; they need fewer evaluations",
+        ),
+        _ => Ok(()),
+    }
 }
 
 /// Checks the points for the objective of the largest deviation: tolerances must be above zero; weights give a warning.

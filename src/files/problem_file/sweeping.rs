@@ -2,7 +2,7 @@
 
 use super::raw::RawProblem;
 use super::target::Whereabouts;
-use super::{folder_of, is_bare_target, overrides, text_about};
+use super::{folder_of, holds_poses, is_bare_target, overrides, text_about};
 use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::input_text;
 use crate::files::linkage_file::check_format;
@@ -28,7 +28,8 @@ impl Template {
             let diagnostic = Diagnostic::new(shown, "", "the name of this file is not text");
             return Err(Box::new(diagnostic.with_help("rename the file")));
         };
-        let text = if is_bare_target(path) { text_about(&name) } else { input_text::read(path)? };
+        let text =
+            if is_bare_target(path) { text_about(&name, holds_poses(path)) } else { input_text::read(path)? };
         let toml = TomlText { file: &shown, text: &text };
         let raw: RawProblem = toml.read()?;
         check_format(&toml, raw.format, super::FORMAT)?;
@@ -39,10 +40,16 @@ impl Template {
         if solve.certify {
             return refuse_clock(&toml, "solve.certify");
         }
-        let named = raw.task.as_ref().and_then(|task| task.0.path.as_ref()).map(|path| &path.0);
-        let named = named.map(|path| [("file", path.file.as_deref()), ("svg", path.svg.as_deref())]);
+        let task = raw.task.as_ref().map(|task| &task.0);
+        let of_path = task.and_then(|task| task.path.as_ref()).map(|path| &path.0);
+        let of_motion = task.and_then(|task| task.motion.as_ref()).map(|motion| &motion.0);
+        let named = [
+            ("task.path.file", of_path.and_then(|path| path.file.as_deref())),
+            ("task.path.svg", of_path.and_then(|path| path.svg.as_deref())),
+            ("task.motion.file", of_motion.and_then(|motion| motion.file.as_deref())),
+        ];
         let mut beside = Vec::new();
-        for (key, file) in named.into_iter().flatten() {
+        for (key, file) in named {
             if let Some(file) = file {
                 beside.push(named_file(&toml, path, key, file)?);
             }
@@ -50,7 +57,7 @@ impl Template {
         Ok(Template { problem: PlannedFile { name, text }, beside })
     }
 
-    /// Reads a file that a value of `task.path.file` or `task.path.svg` names, unless it is held already.
+    /// Reads a file that a value of `task.path.file`, `task.path.svg` or `task.motion.file` names, unless it is held already.
     pub fn add_named(&mut self, path: &Path, key: &str, file: &str) -> Checked<()> {
         if self.beside.iter().all(|held| held.name != file) {
             let toml = TomlText { file: &self.problem.name, text: "" };
