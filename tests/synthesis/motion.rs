@@ -135,7 +135,6 @@ fn poses_of_random_linkages_are_met_and_noisy_ones_fitted_as_well_as_from_the_tr
             worse.push((case, best.error.objective / truth));
         }
     }
-    println!("worse than from the truth: {worse:?}; refused: {refused}");
     assert!(worse.len() * 50 <= cases, "{worse:?}");
     assert!(refused * 20 <= cases, "{refused}");
 }
@@ -305,7 +304,6 @@ fn poses_and_places_are_fitted_together() {
         let exact = (1e-9 * checked.task().size()).powi(2);
         as_good += usize::from(record.candidates[0].error.objective <= (truth * (1.0 + 1e-6)).max(exact));
     }
-    println!("{as_good} of 12 as good as from the truth");
     assert!(as_good >= 11, "{as_good}");
 }
 
