@@ -516,7 +516,7 @@ fn different_targets_and_units_are_said_to_differ() {
 #[test]
 fn an_unknown_key_lists_the_keys() {
     let error = "speed\x1b".parse::<SortKey>().unwrap_err().to_string();
-    let expected = "no figure is called \"speed\": sort by sum_sq, rms, max, to_curve, transmission, link_ratio, size, extent, objective";
+    let expected = "no figure is called \"speed\": sort by sum_sq, rms, max, to_curve, transmission, link_ratio, size, extent, objective, angle_rms, angle_max";
     assert_eq!(error, expected);
     for key in SortKey::ALL {
         assert_eq!(key.name().parse(), Ok(key));
