@@ -5,8 +5,8 @@
 //! The requirements are best met near it by a linkage that cannot stray: with one circuit if branches are free, with an
 //! input that turns fully if one branch is required.
 
-use super::constants::free::{LED_BACK_MOST, WORTH_LEADING_BACK};
-use super::multistart::{Effort, SHORT_FIT, Spender, by_merit};
+use super::constants::free::{LED_BACK_MOST, SHORT_FIT, WORTH_LEADING_BACK};
+use super::multistart::{Effort, Spender, by_merit};
 use crate::mechanism::four_bar::mobility::linkage_type;
 use crate::mechanism::{AssemblyMode, Branch, LinkageType};
 use crate::task::Problem;
