@@ -496,9 +496,22 @@ export interface Expect {
    */
   goal_sum_sq?: number;
   /**
+   * The largest error of the body's angle in that answer, degrees.
+   */
+  max_deg?: number;
+  /**
+   * The least objective that is known of a motion: squared errors of the places plus angle_weight^2 times squared errors
+   * of the angles in radians.
+   */
+  objective?: number;
+  /**
    * Answers that were published.
    */
   published?: Published[];
+  /**
+   * The rms error of the body's angle in that answer, degrees.
+   */
+  rms_deg?: number;
 }
 /**
  * The number of linkages through nine points, up to cognates.
@@ -580,7 +593,7 @@ export interface RawPoints {
  */
 export interface TimingSpec {
   /**
-   * One a point, degrees, counter-clockwise positive.
+   * One a target, degrees, counter-clockwise positive.
    */
   crank_deg: number[];
   offset: AngleOffset;
@@ -737,6 +750,10 @@ export interface ComparedRow {
   figures: {
     [k: string]: number | null;
   };
+  /**
+   * In a motion: the angle from the direction C -> D to the body's x axis, degrees.
+   */
+  frame_deg?: number;
   label: string;
   linkage: FourBar;
   /**
