@@ -1,5 +1,6 @@
 //! What a person sees of a record: figures that agree with it, nothing raw from its names, no panic.
 
+mod motions;
 pub mod records;
 
 use crate::corpora::readers::entry;
@@ -16,11 +17,11 @@ use linkwright::internals::report::html::report_html;
 use linkwright::internals::report::plot::{Glyphs, terminal_plot};
 use linkwright::internals::report::svg::candidate_svg;
 use linkwright::internals::report::table::{BatchRow, batch_summary, candidates_table};
-use records::{detail, ellipse, k18, rocking, shapes};
+use records::{detail, ellipse, k18, motion, rocking, shapes};
 use std::collections::HashMap;
 
 fn all_records() -> Vec<Record> {
-    vec![k18(), ellipse(), rocking(), shapes(), detail()]
+    vec![k18(), ellipse(), rocking(), shapes(), detail(), motion()]
 }
 
 /// Everything that is made of a record, as text.
@@ -516,7 +517,7 @@ fn different_targets_and_units_are_said_to_differ() {
 #[test]
 fn an_unknown_key_lists_the_keys() {
     let error = "speed\x1b".parse::<SortKey>().unwrap_err().to_string();
-    let expected = "no figure is called \"speed\": sort by sum_sq, rms, max, to_curve, transmission, link_ratio, size, extent, objective";
+    let expected = "no figure is called \"speed\": sort by sum_sq, rms, max, to_curve, transmission, link_ratio, size, extent, objective, angle_rms, angle_max";
     assert_eq!(error, expected);
     for key in SortKey::ALL {
         assert_eq!(key.name().parse(), Ok(key));
