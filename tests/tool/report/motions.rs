@@ -100,7 +100,7 @@ fn a_missed_tolerance_of_the_angle_is_named_with_its_pose() {
         text.contains("Tolerances not met by 0.4\u{b0} at pose 3: the nearest, #1, has an angle error"),
         "{text}"
     );
-    assert!(text.contains("The narrowest band found is 1.8 times the tolerances."), "{text}");
+    assert!(text.contains("The narrowest band found is 1.80"), "{text}");
 }
 
 /// A drawing shows a frame in outline and one filled at each pose that has an angle, turned as the body is.
