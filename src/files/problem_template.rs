@@ -22,12 +22,12 @@ tolerance = 0.5                 # the largest error accepted at any point; remov
 const SAMPLE_POSES: &str = "\
 # The poses to pass, in order: where a point of the body is to be, and the body's angle in degrees, counter-clockwise
 # positive. A row of two numbers asks for the place alone. Many poses: file = \"poses.csv\" (columns x,y,angle_deg).
-# Here a lid, told by its front edge: shut, lifted, and open above the box.
+# Here a lid of 600 mm, given by its front edge: shut, three times on the way, and open.
 poses = [
-    POSES
+    [600, 0, 0], [579, 158, 15], [542, 284, 27], [501, 381, 37], [433, 483, 50],
 ]
 closed = false                  # true: the motion returns to the first pose
-tolerance = 2                   # the largest error of the place accepted at any pose; remove to take the best there is
+tolerance = 3                   # the largest error of the place accepted at any pose; remove to take the best there is
 tolerance_deg = 1               # and of the angle
 # angle_weight = 300            # a length: an angle error of one radian counts like it; where silent, the target's size
 # weight = [1, 1, 1, 1, 5]      # one a pose: the last counts five times
@@ -81,7 +81,10 @@ fn motion_template(name: &str, poses_file: Option<&str>) -> String {
     };
     let head = HEAD.replace("NAME", &quoted(name)).replace("[task.path]", "[task.motion]");
     let head = head.replace("where the points come from", "where the poses come from");
-    head + &poses + DESIGN + BODY + REQUIRE + &requirements() + SOLVE + END
+    let design = DESIGN.replace(ANY_COUPLER, PINS_APART);
+    // A body that is moved by hand needs no crank that turns fully.
+    let requirements = requirements().replace("type = ", "# type = ");
+    head + &poses + &design + BODY + REQUIRE + &requirements + SOLVE + END
 }
 
 fn path_template(name: &str, points_file: Option<&str>) -> String {
@@ -159,6 +162,11 @@ const POINT: &str = "\
 # coupler_x = [-100, 200]       # the tracing point along the coupler, from the crank's pin
 # coupler_y = [-100, 100]       # and across it
 ";
+
+/// The coupler's length in the lines of a path and of a motion.
+const ANY_COUPLER: &str = "# b = [20, 200]                 # coupler\n";
+const PINS_APART: &str =
+    "b = [100, 400]                  # coupler: so far apart are the two pins in the body\n";
 
 /// The body's point on the coupler.
 const BODY: &str = "\

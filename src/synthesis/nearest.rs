@@ -36,6 +36,11 @@ fn on_circuits(linkage: &FourBar) -> Vec<f64> {
     }
 }
 
+/// A place on a circuit: the crank angle and the assembly.
+type Place = (f64, AssemblyMode);
+/// The coupler point and the coupler's direction (radians) at a place.
+type Sample = (Complex, f64, Place);
+
 /// Places of the circuit at which a body is tried to lie at the first target.
 const TRIED: usize = 48;
 
@@ -45,10 +50,10 @@ fn of_body(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<Assemb
     let task = problem.task();
     let body = task.body()?;
     let first = body.angles.iter().flatten().next()?;
-    let mut best: Option<(f64, f64, Vec<(f64, AssemblyMode)>)> = None;
+    let mut best: Option<(f64, f64, Vec<Place>)> = None;
     for start in on_circuits(linkage) {
         let curve = CouplerCurve::through(linkage, start, linkage.assembly(), DEFAULT_SAMPLES);
-        let samples: Vec<(Complex, f64, (f64, AssemblyMode))> = (0..DEFAULT_SAMPLES)
+        let samples: Vec<Sample> = (0..DEFAULT_SAMPLES)
             .filter_map(|i| {
                 let at = curve.position_at(TAU * i as f64 / DEFAULT_SAMPLES as f64);
                 let joints = linkage.position_with(at.0, at.1).joints()?;
@@ -59,7 +64,7 @@ fn of_body(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<Assemb
             let frame = first - coupler;
             let (mut sum, mut places) = (0.0, Vec::with_capacity(task.len()));
             for (j, target) in task.points().iter().enumerate() {
-                let off = |(point, coupler, _): &&(Complex, f64, (f64, AssemblyMode))| {
+                let off = |(point, coupler, _): &&Sample| {
                     let turned = body.angles[j].map_or(0.0, |angle| wrapped(angle - coupler - frame));
                     (target - point).norm_sqr() + (body.angle_weight * turned).powi(2)
                 };
@@ -74,7 +79,7 @@ fn of_body(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<Assemb
     }
     let (_, frame, places) = best?;
     let shape = Shape::from(linkage);
-    let position = |(angle, assembly): &(f64, AssemblyMode)| {
+    let position = |(angle, assembly): &Place| {
         let joints = linkage.position_with(*angle, *assembly).joints()?;
         let coupler = (joints.follower_pin - joints.crank_pin) / shape.coupler;
         Some([Complex::from_polar(1.0, *angle), coupler])

@@ -159,7 +159,7 @@ fn check_body(body: &Body, n: usize) -> Result<(), TaskError> {
     };
     same_length("the angle", angles.len())?;
     let mut given = angles.iter().enumerate().filter_map(|(index, angle)| Some((index, (*angle)?)));
-    if let Some((index, value)) = given.find(|(_, angle)| !(angle.abs() <= MAX_MAGNITUDE)) {
+    if let Some((index, value)) = given.find(|(_, angle)| angle.is_nan() || angle.abs() > MAX_MAGNITUDE) {
         return Err(TaskError::NotFinite { index, value });
     }
     if angles.iter().all(Option::is_none) {

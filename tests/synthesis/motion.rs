@@ -135,7 +135,6 @@ fn poses_of_random_linkages_are_met_and_noisy_ones_fitted_as_well_as_from_the_tr
             worse.push((case, best.error.objective / truth));
         }
     }
-    println!("worse than from the truth: {worse:?}; refused: {refused}");
     assert!(worse.len() * 50 <= cases, "{worse:?}");
     assert!(refused * 20 <= cases, "{refused}");
 }
@@ -305,7 +304,6 @@ fn poses_and_places_are_fitted_together() {
         let exact = (1e-9 * checked.task().size()).powi(2);
         as_good += usize::from(record.candidates[0].error.objective <= (truth * (1.0 + 1e-6)).max(exact));
     }
-    println!("{as_good} of 12 as good as from the truth");
     assert!(as_good >= 11, "{as_good}");
 }
 
@@ -319,4 +317,37 @@ fn few_poses_leave_a_family_whose_best_transmitting_member_comes_first() {
     assert!(best.accepted && best.error.rms < 1e-10);
     assert!(best.transmission_deg.worst > 60.0, "{}", best.transmission_deg.worst);
     assert!(record.family.is_some_and(|family| family.dimension > 0));
+}
+
+#[test]
+fn every_motion_of_the_collection_comes_to_its_best_known_objective() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/motion");
+    let mut known = 0;
+    for entry in std::fs::read_dir(folder).expect("the folder") {
+        let path = entry.expect("a file").path();
+        let set = [("solve.candidates", "1"), ("solve.advice", "false")];
+        let set: Vec<_> = set.map(|(key, value)| (key.to_owned(), value.to_owned())).to_vec();
+        let problem = linkwright::load_problem(&path, &set).unwrap_or_else(|why| panic!("{why}"));
+        let size = problem.spec.task.to_task().expect("a task").size();
+        for seed in [1, 2] {
+            let mut spec = problem.spec.clone();
+            spec.solve.seed = seed;
+            let record = solved(spec);
+            assert_true(&record);
+            let best = &record.candidates[0];
+            assert!(best.accepted, "{}", path.display());
+            let exact = (1e-9 * size).powi(2);
+            match problem.expect.as_ref().and_then(|expect| expect.objective) {
+                Some(objective) => assert!(
+                    best.error.objective <= (objective * (1.0 + 1e-6)).max(exact),
+                    "{}: {}",
+                    path.display(),
+                    best.error.objective
+                ),
+                None => assert!(best.error.objective <= exact, "{}", path.display()),
+            }
+        }
+        known += 1;
+    }
+    assert!(known >= 12, "{known}");
 }

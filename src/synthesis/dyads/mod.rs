@@ -27,7 +27,7 @@
 //!
 //! References: L. Burmester, Lehrbuch der Kinematik, 1888; G. N. Sandor and A. G. Erdman, Advanced Mechanism Design,
 //! 1984, chapter 3 (compatibility linkage); I. Kasa, IEEE Trans. Instrum. Meas. 25 (1976) 8 (circle fit); Q. J. Ge,
-//! A. Purwar, P. Zhao, S. Deshpande, J. Comput. Inf. Sci. Eng. 17 (2017) 021007 (the kernel of linear rows).
+//! A. Purwar, P. Zhao, S. Deshpande, Journal of Computing and Information Science in Engineering 17 (2017) 021007 (the kernel of linear rows).
 
 mod circle;
 mod conics;
