@@ -145,11 +145,14 @@ impl Marks {
     fn new(scene: &Scene, view: &View, detail: Detail) -> Self {
         let n = scene.targets.len();
         let many = n > MARKED;
-        let size = match n {
+        let size: f64 = match n {
             0..=40 => 4.6,
             41..=MARKED => 3.2,
             _ => 1.6,
         };
+        // A ring must leave the corner of its frame in sight.
+        let size =
+            if scene.targets.iter().any(|target| target.angle.is_some()) { size.min(3.0) } else { size };
         let mut drawn: BTreeSet<(i64, i64)> = BTreeSet::new();
         let mut list = Vec::new();
         for target in &scene.targets {

@@ -40,7 +40,7 @@ pub fn practicality_text(
     }
     out.push_str(&words.head("How much a wrong dimension moves the path"));
     match &practicality.sensitivity {
-        Some(felt) => out.push_str(&words.sensitivity(felt, practicality.at_points, tolerance)),
+        Some(felt) => out.push_str(&words.sensitivity(felt, practicality, tolerance)),
         None => out.push_str(
             "  At every position looked at the linkage stands at a toggle: there are no derivatives.\n",
         ),
@@ -188,7 +188,8 @@ impl Words {
         out
     }
 
-    fn sensitivity(&self, felt: &Sensitivity, at_points: bool, tolerance: f64) -> String {
+    fn sensitivity(&self, felt: &Sensitivity, practicality: &Practicality, tolerance: f64) -> String {
+        let at_target = if practicality.noun == "pose" { "at pose" } else { "at point" };
         let worst = felt.worst_dimension().name;
         let ink = |d: &Dimension| match d.name {
             name if name == felt.ground.name => Ink::Faint,
@@ -199,20 +200,21 @@ impl Words {
             (Left, "dimension", &|d| (d.name.to_owned(), ink(d))),
             (Right, "rms", &|d| (significant(d.rms, DIGITS), ink(d))),
             (Right, "most", &|d| (significant(d.worst, DIGITS), ink(d))),
-            (Right, "at point", &|d| (d.worst_at.to_string(), ink(d))),
+            (Right, at_target, &|d| (d.worst_at.to_string(), ink(d))),
         ];
         let rows: Vec<&Dimension> = felt.dimensions.iter().chain([&felt.ground]).collect();
-        let grid = Grid::of(&rows, if at_points { &columns } else { &columns[..3] });
-        let mut out = indented(&shift(felt));
+        let grid = Grid::of(&rows, if practicality.at_points { &columns } else { &columns[..3] });
+        let mut out = indented(&shift(felt, practicality.noun));
         out.push_str(&grid.render(self.colour));
-        out.push_str(&indented(&self.together(felt, at_points, tolerance)));
+        out.push_str(&indented(&self.together(felt, practicality, tolerance)));
         out
     }
 
     /// Returns the worst dimension, and the combined effect of all dimensions.
-    pub(super) fn together(&self, felt: &Sensitivity, at_points: bool, tolerance: f64) -> String {
+    pub(super) fn together(&self, felt: &Sensitivity, practicality: &Practicality, tolerance: f64) -> String {
         let worst = felt.worst_dimension().name;
-        let most = if at_points { format!(" at point {}", felt.worst_at) } else { String::new() };
+        let (at_points, noun) = (practicality.at_points, practicality.noun);
+        let most = if at_points { format!(" at {noun} {}", felt.worst_at) } else { String::new() };
         let mut text = format!(
             "The worst dimension is {worst}. With every dimension off by {} (1 sigma, the nine above independent of \
              each other) the path is off by {} rms, {} where it is most{most} (1 sigma).",
@@ -234,8 +236,9 @@ impl Words {
 }
 
 /// Returns the description of the table of sensitivities.
-pub(super) fn shift(felt: &Sensitivity) -> String {
-    format!("Shift of the path for an error of 1 in each dimension alone, {}.", settles(felt.crank))
+pub(super) fn shift(felt: &Sensitivity, noun: &str) -> String {
+    let settled = settles(felt.crank).replace("point", noun);
+    format!("Shift of the path for an error of 1 in each dimension alone, {settled}.")
 }
 
 /// Returns the distances between joints that a link keeps fixed.

@@ -133,7 +133,7 @@ fn legend(canvas: &mut Canvas, y: f64, with_curve: bool, of_motion: bool) {
     let text = font(12, palette::INK);
     let mut x = WIDTH - MARGIN;
     if with_curve {
-        let curve = if of_motion { "curve of the body's point" } else { "coupler curve" };
+        let curve = if of_motion { "curve of its point" } else { "coupler curve" };
         x -= text_width(curve, 12.0);
         canvas.text(Spot::new(x, y), Anchor::Start, &text, curve);
         let line = stroke(palette::CURVE, 2.4) + ROUND_ENDS;
@@ -156,8 +156,10 @@ fn legend(canvas: &mut Canvas, y: f64, with_curve: bool, of_motion: bool) {
         }
         frame("body wanted", true);
     }
-    let first = if of_motion { "target pose 0" } else { "target point 0" };
-    for (label, fill, radius) in [("target", "none", 4.6), (first, palette::TARGET, 5.4)] {
+    let first = if of_motion { "pose 0" } else { "target point 0" };
+    let marks = [("target", "none", 4.6), (first, palette::TARGET, 5.4)];
+    // The ring of a pose is at the origin of its frame.
+    for (label, fill, radius) in marks.into_iter().skip(usize::from(of_motion)) {
         x -= text_width(label, 12.0);
         canvas.text(Spot::new(x, y), Anchor::Start, &text, label);
         let mark = filled(fill, palette::TARGET, 1.7);

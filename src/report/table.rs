@@ -119,30 +119,35 @@ fn rows(record: &Record, colour: Colour) -> String {
     grid.render(colour)
 }
 
-/// The columns of a motion's table: beside the errors of the place, those of the angle.
+/// The error in parts of the target's size, or in degrees, below which an answer is exact to a reader.
+const EXACT: f64 = 1e-7;
+
+/// Returns the rows of a motion: beside the errors of the place, those of the angle.
 fn rows_of_motion(record: &Record, colour: Colour) -> String {
     let head = words::minimised_in(record).map_or("objective", |(head, _)| head);
     let transmission = |c: &Candidate| {
         let (worst, over) = (c.transmission_deg.worst, words::over(c.transmission_deg.over));
         format!("{}° {over:<5}", significant(worst, 3))
     };
-    let angle = |c: &Candidate, of: fn(&AngleErrorRecord) -> f64| {
-        plain(c.error.angle.as_ref().map_or(NO_NUMBER.to_owned(), |a| format!("{}°", significant(of(a), 3))))
+    let size = record.problem.resolved.task.to_task().map_or(1.0, |task| task.size());
+    // Of an exact answer only the power of ten matters.
+    let short = |value: f64, scale: f64, digits: usize| {
+        significant(value, if value < EXACT * scale { 1 } else { digits })
     };
-    let angle_at = |c: &Candidate| {
-        plain(c.error.angle.as_ref().map_or(NO_NUMBER.to_owned(), |angle| angle.max_at.to_string()))
+    let length = |value: f64| plain(short(value, size, 4));
+    let angle = |c: &Candidate, of: fn(&AngleErrorRecord) -> f64| {
+        plain(c.error.angle.as_ref().map_or(NO_NUMBER.to_owned(), |a| format!("{}°", short(of(a), 1.0, 3))))
     };
     let grid = Grid::of(
         &record.candidates,
         &[
             (Right, "#", &|c| (c.rank.to_string(), Ink::Strong)),
-            (Right, head, &|c| plain(significant(c.error.objective, 5))),
-            (Right, "rms", &|c| plain(significant(c.error.rms, 4))),
-            (Right, "max", &|c| plain(significant(c.error.max, 4))),
-            (Right, "at", &|c| plain(c.error.max_at.to_string())),
+            (Right, head, &|c| plain(short(c.error.objective, EXACT * size * size, 5))),
+            (Right, "rms", &|c| length(c.error.rms)),
+            (Right, "max", &|c| length(c.error.max)),
+            (Right, "at", &|c| plain(worst_at(record, c).to_string())),
             (Right, "angle", &|c| angle(c, |angle| angle.rms_deg)),
             (Right, "max", &|c| angle(c, |angle| angle.max_deg)),
-            (Right, "at", &angle_at),
             (Left, "type", &|c| plain(c.linkage_type.name())),
             (Right, "transm.", &|c| plain(transmission(c))),
             (Right, "ratio", &|c| plain(significant(c.link_ratio, 3))),

@@ -221,7 +221,8 @@ pub struct Compare {
     /// Measure everything on the target of this problem [default: runs on their own]
     #[arg(long, value_name = "PROBLEM")]
     pub target: Option<PathBuf>,
-    /// Which figures rank, the first first: sum_sq, rms, max, to_curve, transmission, link_ratio, size, objective
+    /// Which figures rank, the first first: sum_sq, rms, max, to_curve, transmission, link_ratio, size, extent, objective,
+    /// angle_rms, angle_max
     /// [default: what the problem minimises, sum_sq where there are several]
     #[arg(long, value_name = "KEY,..", value_delimiter = ',')]
     pub sort: Vec<SortKey>,

@@ -30,6 +30,9 @@ pub struct Practicality {
     pub sensitivity: Option<Sensitivity>,
     /// Whether the path is examined at a target's points, counted from 0; else all along the motion.
     pub at_points: bool,
+    /// The word for one of the target's points: `point`, or `pose` in a motion, of which the path of the body's origin is
+    /// examined.
+    pub noun: &'static str,
 }
 
 impl Practicality {
@@ -48,7 +51,8 @@ impl Practicality {
         let cycle = candidate.transmission_deg.over == TransmissionOver::Cycle;
         let sweep = Sweep::of_motion(&verdict.motion, cycle);
         let felt = sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem));
-        Some(Practicality::of(sweep, build, felt, true))
+        let noun = problem.spec().task.noun();
+        Some(Practicality { noun, ..Practicality::of(sweep, build, felt, true) })
     }
 
     /// Examines a linkage by itself over its whole motion without passing a toggle ([`Sweep::of_linkage`]), and the
@@ -61,7 +65,7 @@ impl Practicality {
 
     fn of(sweep: Sweep, build: Build, sensitivity: Option<Sensitivity>, at_points: bool) -> Self {
         let (layering, distances) = (layering(&sweep, build), pivot_distances(&sweep));
-        Practicality { sweep, build, layering, distances, sensitivity, at_points }
+        Practicality { sweep, build, layering, distances, sensitivity, at_points, noun: "point" }
     }
 }
 

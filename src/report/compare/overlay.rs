@@ -100,7 +100,9 @@ fn targets(canvas: &mut Canvas, view: &View, entry: &Entry, colour: &str) {
     if let Some(body) = &entry.body {
         let given = points.iter().zip(&body.angle_deg).filter_map(|(p, angle)| Some((*p, (*angle)?)));
         let given: Vec<_> = given.filter(|(p, _)| p.iter().all(|x| x.is_finite())).collect();
-        for (i, (p, angle)) in given.iter().enumerate().filter(|(i, _)| bodies::is_strong(*i, given.len())) {
+        for (i, (p, angle)) in
+            given.iter().enumerate().filter(|(i, _)| bodies::is_strong(*i, given.len(), 1.0))
+        {
             let posed = Posed { at: view.spot(point(*p)), angle: angle.to_radians() };
             posed.outlined(canvas, bodies::length(&spots), colour, if i == 0 { 1.2 } else { 1.0 });
         }

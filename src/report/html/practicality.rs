@@ -57,8 +57,8 @@ fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<Markup> 
         }
         @if let Some(distances) = &found.distances { (joints(distances, hole)) }
         @if let Some(felt) = &found.sensitivity {
-            (sensitivities(felt))
-            (paragraph("", &words.together(felt, found.at_points, usual_tolerance(&c.linkage, unit))))
+            (sensitivities(felt, found.noun))
+            (paragraph("", &words.together(felt, &found, usual_tolerance(&c.linkage, unit))))
         }
         (paragraph("notes", NOTES))
     })
@@ -85,7 +85,7 @@ fn joints(distances: &[PivotDistance], hole: f64) -> Markup {
 }
 
 /// Returns the table of each dimension's effect on the path.
-fn sensitivities(felt: &Sensitivity) -> Markup {
+fn sensitivities(felt: &Sensitivity, noun: &str) -> Markup {
     let columns: [Column<&Dimension>; 2] = [
         ("rms", true, &|d| Cell::number(None, significant(d.rms, 3))),
         ("most", true, &|d| Cell::number(None, significant(d.worst, 3))),
@@ -95,7 +95,7 @@ fn sensitivities(felt: &Sensitivity) -> Markup {
     html! {
         details {
             summary { "What an error of each dimension does" }
-            (paragraph("notes", &shift(felt)))
+            (paragraph("notes", &shift(felt, noun)))
             (tabulated(("Sensitivities", "tight"), ("dimension", false), &columns, rows))
         }
     }

@@ -1,5 +1,6 @@
 //! What a person sees of a record: figures that agree with it, nothing raw from its names, no panic.
 
+mod motions;
 pub mod records;
 
 use crate::corpora::readers::entry;
@@ -16,11 +17,11 @@ use linkwright::internals::report::html::report_html;
 use linkwright::internals::report::plot::{Glyphs, terminal_plot};
 use linkwright::internals::report::svg::candidate_svg;
 use linkwright::internals::report::table::{BatchRow, batch_summary, candidates_table};
-use records::{detail, ellipse, k18, rocking, shapes};
+use records::{detail, ellipse, k18, motion, rocking, shapes};
 use std::collections::HashMap;
 
 fn all_records() -> Vec<Record> {
-    vec![k18(), ellipse(), rocking(), shapes(), detail()]
+    vec![k18(), ellipse(), rocking(), shapes(), detail(), motion()]
 }
 
 /// Everything that is made of a record, as text.

@@ -87,7 +87,7 @@ pub fn candidate(
         linkage,
         crank_deg: crank_angles.iter().map(|a| a.to_degrees()).collect(),
         t1_at: t1.to_vec(),
-        frame_deg: None,
+        frame_deg: error.angle.as_ref().map(|angle| angle.frame.to_degrees()),
         error: ErrorRecord {
             objective: error.objective,
             sum_sq: error.sum_sq,
@@ -100,7 +100,11 @@ pub fn candidate(
                 rms: rms(to_curve.sum_sq, task.len()),
                 max: to_curve.max,
             },
-            angle: None,
+            angle: error.angle.as_ref().map(|angle| AngleErrorRecord {
+                rms_deg: angle.rms.to_degrees(),
+                max_deg: angle.max.to_degrees(),
+                max_at: angle.max_at,
+            }),
             to_raw: None,
         },
         linkage_type: mobility.linkage_type.expect("can be joined"),
@@ -278,5 +282,37 @@ pub fn detail() -> Record {
     record.problem.unit = Some(Unit::In);
     let task = record.problem.resolved.task.to_task().unwrap();
     record.candidates.push(candidate(1, big, &task, &angles, &[AssemblyMode::Plus; 8]));
+    record
+}
+
+/// The angles by which the body of [`motion`] is off at its poses, degrees; without one only the place counts.
+pub const TURNED_DEG: [Option<f64>; 6] = [Some(0.4), Some(-0.3), None, Some(0.9), Some(-0.6), Some(-0.4)];
+/// The angle from the direction C -> D to the body of [`motion`], degrees: the errors above have the mean 0.
+pub const FRAME_DEG: f64 = 25.0;
+
+/// A body that a crank-rocker takes through six poses, off by known lengths and angles, and the same by a wider crank.
+pub fn motion() -> Record {
+    let rocker = linkage([10.0, 20.0], [90.0, 30.0], [25.0, 70.0, 55.0, 60.0, 65.0], 1, 1);
+    let angles: Vec<f64> = (0..6).map(|i| 0.3 + 0.9 * f64::from(i)).collect();
+    let joints: Vec<_> = angles.iter().map(|a| rocker.position(*a).joints().unwrap()).collect();
+    let places: Vec<[f64; 2]> = joints
+        .iter()
+        .zip(1..)
+        .map(|(j, k)| [j.coupler_point.re, j.coupler_point.im + 0.1 * f64::from(k)])
+        .collect();
+    let angle_deg = joints
+        .iter()
+        .zip(TURNED_DEG)
+        .map(|(j, off)| Some((j.follower_pin - j.crank_pin).arg().to_degrees() + FRAME_DEG + off?))
+        .collect();
+    let mut spec = path(&places, false);
+    spec.body = Some(BodySpec { angle_deg, angle_weight: 50.0, tolerance_deg: None });
+    let mut record = record("six poses", spec);
+    record.problem.unit = Some(Unit::Mm);
+    let task = record.problem.resolved.task.to_task().unwrap();
+    let t1 = [AssemblyMode::Plus; 6];
+    record.candidates.push(candidate(1, rocker, &task, &angles, &t1));
+    let wider = linkage([10.0, 20.0], [90.0, 30.0], [26.0, 70.0, 55.0, 60.0, 65.0], 1, 1);
+    record.candidates.push(candidate(2, wider, &task, &angles, &t1));
     record
 }

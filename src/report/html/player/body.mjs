@@ -91,7 +91,7 @@ export class Bodies {
     const spots = stage.cycle.points.map((point) => stage.toPixel(point.target));
     const across = [0, 1].map((axis) => spots.map((spot) => spot[axis]));
     const diagonal = Math.hypot(...across.map((list) => Math.max(...list) - Math.min(...list)));
-    this.long = Math.min(Math.max(0.09 * diagonal, 18), 40);
+    this.long = Math.min(Math.max(0.11 * diagonal, 22), 46);
     const turned = poses.map((_, i) => i).filter((i) => poses[i].wanted !== null);
     const last = turned.length - 1;
     const isStrong = (k) =>
