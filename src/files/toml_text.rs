@@ -21,7 +21,7 @@ pub(crate) struct TomlText<'a> {
 const TASKS_TO_COME: [&str; 1] = ["function"];
 const TASKS: &str = "a problem has one task: [task.path] or [task.motion]";
 /// The keys of `[task.motion]` that are known but not supported yet.
-const MOTION_TO_COME: [&str; 2] = ["timing", "exact"];
+const MOTION_TO_COME: [&str; 1] = ["exact"];
 
 /// A key, or an item of a list, with its places in the text.
 struct Place<'p> {
@@ -186,7 +186,7 @@ impl<'a> TomlText<'a> {
         if MOTION_TO_COME.contains(&key) && allowed.contains(&"poses") {
             return self
                 .about_file(format!("{key} is not supported yet in [task.motion]"))
-                .with_help("remove it: poses are approached at whatever crank angles suit them, all alike");
+                .with_help("remove it: poses are approached, all alike; a large weight, or a small tolerance, brings one nearer");
         }
         if key == "task" && allowed.contains(&"vector_loop") {
             return self.about_file("this is a problem file, not a linkage file").with_help(

@@ -19,10 +19,10 @@ use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::numbers::optimise::nonnegative::nonnegative_least_squares;
 use crate::record::{Candidate, Cost, LimitUnit};
 use crate::task::Problem;
-use crate::task::forms::design_space::{DESIGN, Derived, Design, DesignSpace, Shape};
+use crate::task::forms::design_space::{DESIGN, Derived, DesignSpace, Shape};
 use crate::task::forms::rows::{Motion, RowKind, Side};
 use crate::task::forms::start::Start;
-use crate::task::forms::timed::TimedFit;
+use crate::task::forms::timed::{TimedMotionFit, TimedPathFit};
 use crate::task::forms::torus::{MotionFit, PathFit};
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::Objective;
@@ -80,16 +80,21 @@ pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
     let space = problem.space(start.setting.side);
     let Some(shape) = space.shape(&start.design) else { return Vec::new() };
     let at = At { problem, candidate, start: &start, space: &space, shape: &shape };
-    if start.positions.is_empty() {
-        let Some(fit) = TimedFit::new(problem, start.setting) else { return Vec::new() };
-        at.costs(&fit, &start.positions, &fit.motion(&start.design, &shape))
-    } else {
-        let (setting, positions) = (start.setting, &start.positions);
-        let motion = PathFit::new(problem, setting).motion(&shape, positions);
-        match problem.task().body() {
-            None => at.costs(&PathFit::new(problem, setting), positions, &motion),
-            Some(_) => at.costs(&MotionFit::new(problem, setting), positions, &motion),
+    let (setting, positions, design) = (start.setting, &start.positions, &start.design);
+    let body = problem.task().body();
+    if positions.is_empty() {
+        let Some(fit) = TimedPathFit::new(problem, setting) else { return Vec::new() };
+        let motion = fit.motion(design, &shape);
+        if body.is_none() {
+            return at.costs(&fit, design, positions, &motion);
         }
+        let Some(fit) = TimedMotionFit::new(problem, setting) else { return Vec::new() };
+        return at.costs(&fit, &fit.unknowns(design), positions, &motion);
+    }
+    let motion = PathFit::new(problem, setting).motion(&shape, positions);
+    match body {
+        None => at.costs(&PathFit::new(problem, setting), design, positions, &motion),
+        Some(_) => at.costs(&MotionFit::new(problem, setting), design, positions, &motion),
     }
 }
 
@@ -103,14 +108,17 @@ struct At<'a> {
 }
 
 impl At<'_> {
-    fn costs<const R: usize, F: BlockLeastSquares<DESIGN, R>>(
+    /// Returns the costs at unknowns x of a fit, of which the first are the design; any others are at their best, and no limit
+    /// depends on them.
+    fn costs<const N: usize, const R: usize, F: BlockLeastSquares<N, R>>(
         &self,
         fit: &F,
+        x: &[f64; N],
         state: &F::State,
         motion: &Motion<'_>,
     ) -> Vec<Cost> {
         let size = self.problem.task().size();
-        let (space, design) = (self.space, &self.start.design);
+        let space = self.space;
         let free_timing = !self.start.positions.is_empty();
         let mut kinds = Vec::new();
         self.problem.requirements(space).rows(self.start.setting.aim, self.shape, motion, &mut |row| {
@@ -121,10 +129,10 @@ impl At<'_> {
             .filter(|&i| space.bounds()[i].0 < space.bounds()[i].1)
             .map(|i| (i, if space.coordinate(i).is_none_or(|(_, is_angle)| is_angle) { 1.0 } else { size }))
             .collect();
-        let scaled = |row: &Design| unknowns.iter().map(|&(i, by)| by * row[i]).collect::<Vec<f64>>();
+        let scaled = |row: &[f64; N]| unknowns.iter().map(|&(i, by)| by * row[i]).collect::<Vec<f64>>();
         let mut active = Vec::new();
         let mut place = 0;
-        fit.constraints(design, state, &mut |value, row| {
+        fit.constraints(x, state, &mut |value, row| {
             let (kind, moved_by_points) = kinds[place];
             place += 1;
             if value <= ACTIVE * size {
@@ -136,8 +144,8 @@ impl At<'_> {
         if active.is_empty() {
             return Vec::new();
         }
-        let mut gradient = [0.0; DESIGN];
-        let complete = fit.linearise(design, state, &mut |block| {
+        let mut gradient = [0.0; N];
+        let complete = fit.linearise(x, state, &mut |block| {
             let (t, r) = (&block.tangent, &block.residual);
             let t_sq: f64 = t.iter().map(|t| t * t).sum();
             let along = t.iter().zip(r).map(|(t, r)| t * r).sum::<f64>();

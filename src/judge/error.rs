@@ -5,7 +5,7 @@ use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar};
 use crate::record::{Candidate, CurveErrorRecord};
-use crate::task::{Body, Problem, Task};
+use crate::task::{Body, Problem, Task, best_frame};
 use rayon::prelude::*;
 
 /// The errors at the positions of the targets: T_j - P_j of the place, and of the angle in a motion.
@@ -65,16 +65,6 @@ impl AngleError {
         }
         AngleError { frame, structural, rms: rms(sum_sq, count.max(1)), max, max_at: max_at.unwrap_or(0) }
     }
-}
-
-/// Returns the frame for which the weighted sum of squared angle errors is least: the mean of the angles `apart`, each on
-/// the turn that is nearest to their mean direction.
-fn best_frame(apart: &[Option<f64>], weights: &[f64]) -> f64 {
-    let given = || apart.iter().zip(weights).filter_map(|(apart, weight)| Some(((*apart)?, *weight)));
-    let middle = given().map(|(apart, weight)| Complex::from_polar(weight, apart)).sum::<Complex>().arg();
-    let total: f64 = given().map(|(_, weight)| weight).sum();
-    let off: f64 = given().map(|(apart, weight)| weight * wrapped(apart - middle)).sum();
-    wrapped(middle + off / total)
 }
 
 /// Returns sqrt(sum_sq / n), the root of the mean square.

@@ -13,8 +13,8 @@ use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, PointBloc
 use crate::record::{Candidate, Family};
 use crate::task::Problem;
 use crate::task::forms::design_space::{DESIGN, Derived, DesignSpace, SHAPE, Shape, unit};
-use crate::task::forms::timed::TimedFit;
-use crate::task::forms::torus::{MotionFit, PathFit};
+use crate::task::forms::timed::{TimedMotionFit, TimedPathFit, WITH_FRAME};
+use crate::task::forms::torus::{MotionFit, PathFit, Positions};
 use nalgebra::{DMatrix, SMatrix};
 
 /// The part of the largest singular value below which a singular value counts as zero: an exact answer is known to
@@ -37,7 +37,14 @@ pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     let start = start_at(problem, candidate)?;
     let mut rows: Vec<[f64; DESIGN]> = Vec::new();
     if start.positions.is_empty() {
-        linearised(&TimedFit::new(problem, start.setting)?, &start.design, &start.positions, &mut rows)?;
+        let (setting, positions) = (start.setting, &start.positions);
+        match problem.task().body() {
+            None => linearised(&TimedPathFit::new(problem, setting)?, &start.design, positions, &mut rows)?,
+            Some(_) => {
+                let fit = TimedMotionFit::new(problem, setting)?;
+                centred(&fit, &fit.unknowns(&start.design), positions, &mut rows)?;
+            }
+        }
     } else {
         let (design, positions) = (&start.design, &start.positions);
         match problem.task().body() {
@@ -52,6 +59,28 @@ pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     }
     let free: Vec<usize> = (0..DESIGN).filter(|&i| space.bounds()[i].0 < space.bounds()[i].1).collect();
     Some(free.len() - rank(&space, &shape, &rows, &free))
+}
+
+/// Adds the rows of all targets' derivatives with prescribed timing; the frame of the body is eliminated, which leaves the
+/// angles' rows less their mean.
+fn centred(
+    fit: &TimedMotionFit<'_>,
+    x: &[f64; WITH_FRAME],
+    positions: &Positions,
+    rows: &mut Vec<[f64; DESIGN]>,
+) -> Option<()> {
+    let mut angles: Vec<[f64; DESIGN]> = Vec::new();
+    let exists = fit.linearise(x, positions, &mut |block: &PointBlock<WITH_FRAME, 3>| {
+        let [of_x, of_y, of_angle] = &block.jacobian;
+        rows.extend([of_x, of_y].map(TimedMotionFit::design));
+        if of_angle[DESIGN] != 0.0 {
+            angles.push(TimedMotionFit::design(of_angle));
+        }
+    });
+    let n = angles.len() as f64;
+    let mean: [f64; DESIGN] = std::array::from_fn(|i| angles.iter().map(|row| row[i]).sum::<f64>() / n);
+    rows.extend(angles.iter().map(|row| std::array::from_fn(|i| row[i] - mean[i])));
+    exists.then_some(())
 }
 
 /// Adds the rows of all points' derivatives, normal to their own tangents; `None` if one does not exist.

@@ -15,15 +15,19 @@ use super::starts::Starts;
 use crate::judge::assess::assess_on_curve;
 use crate::judge::rank::exact_cost;
 use crate::judge::unwrapped::unwrapped;
+use crate::mechanism::FourBar;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::numbers::arithmetic::streams::stream;
-use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, solve};
+use crate::numbers::optimise::levenberg_marquardt::{
+    BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve,
+};
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Evaluations};
 use crate::task::forms::design_space::Design;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
-use crate::task::forms::timed::TimedFit;
+use crate::task::forms::timed::{TimedFit, TimedMotionFit, TimedPathFit};
 use crate::task::forms::torus::{MotionFit, PathFit, Positions};
+use crate::task::spec::Objective;
 use crate::task::{AngleOffset, Problem, Setting, Timing};
 use rayon::prelude::*;
 
@@ -176,11 +180,10 @@ pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     let weight: f64 = task.weights().iter().sum();
     let scale = weight * task.size().powi(2);
     if start.positions.is_empty() {
-        let fit = TimedFit::new(problem, start.setting)?;
-        let cost = fit.cost(&start.design, &start.positions)?;
-        let shape = fit.space().shape(&start.design)?;
-        let motion = fit.motion(&start.design, &shape);
-        let lack = fit.requirements().lack(start.setting.aim, &shape, &motion);
+        let (cost, lack) = match problem.task().body() {
+            None => timed_promise(&TimedPathFit::new(problem, start.setting)?, start)?,
+            Some(_) => timed_promise(&TimedMotionFit::new(problem, start.setting)?, start)?,
+        };
         return Some(cost + scale * lack * lack);
     }
     let fit = PathFit::new(problem, start.setting);
@@ -195,6 +198,17 @@ pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     let motion = fit.motion(&shape, &start.positions);
     let lack = fit.requirements().lack(start.setting.aim, &shape, &motion);
     Some(cost + scale * lack * lack)
+}
+
+/// Returns the cost of a start of prescribed timing, and its violation of the requirements.
+fn timed_promise<const N: usize, const R: usize>(
+    fit: &TimedFit<'_, N, R>,
+    start: &Start,
+) -> Option<(f64, f64)> {
+    let cost = fit.cost(&fit.unknowns(&start.design), &start.positions)?;
+    let shape = fit.space().shape(&start.design)?;
+    let motion = fit.motion(&start.design, &shape);
+    Some((cost, fit.requirements().lack(start.setting.aim, &shape, &motion)))
 }
 
 /// The end of a local fit.
@@ -236,19 +250,30 @@ fn fit_with(context: Context<'_>, start: Start, options: &LmOptions) -> Fitted {
     let problem = context.problem;
     let stop = || context.stopped();
     let Start { design, setting, positions } = start;
-    let result = if positions.is_empty() {
-        let Some(fit) = TimedFit::new(problem, setting) else { return Fitted::NONE };
-        solve(&fit, design, positions, options, &stop)
-    } else {
-        match problem.task().body() {
-            None => {
-                let fit = PathFit::new(problem, setting).in_order(&design, &positions);
-                solve(&fit, design, positions, options, &stop)
+    let result = match (positions.is_empty(), problem.task().body()) {
+        (true, None) => {
+            let Some(fit) = TimedPathFit::new(problem, setting) else { return Fitted::NONE };
+            solve(&fit, design, positions, options, &stop)
+        }
+        (true, Some(_)) => {
+            let Some(fit) = TimedMotionFit::new(problem, setting) else { return Fitted::NONE };
+            let end = solve(&fit, fit.unknowns(&design), positions, options, &stop);
+            LmResult {
+                x: TimedMotionFit::design(&end.x),
+                state: end.state,
+                cost: end.cost,
+                violation: end.violation,
+                evaluations: end.evaluations,
+                outcome: end.outcome,
             }
-            Some(_) => {
-                let fit = MotionFit::new(problem, setting).in_order(&design, &positions);
-                solve(&fit, design, positions, options, &stop)
-            }
+        }
+        (false, None) => {
+            let fit = PathFit::new(problem, setting).in_order(&design, &positions);
+            solve(&fit, design, positions, options, &stop)
+        }
+        (false, Some(_)) => {
+            let fit = MotionFit::new(problem, setting).in_order(&design, &positions);
+            solve(&fit, design, positions, options, &stop)
         }
     };
     let usable = !matches!(result.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
@@ -299,7 +324,7 @@ fn judged_with(problem: &Problem, end: &Start, to_curve: Option<CurveErrorRecord
     let task = problem.task();
     if let Timing::Prescribed { crank_angles, offset } = task.timing() {
         let linkage = space.project(&shape.linkage(end.setting.assembly).ok()?).ok()?;
-        let fit = TimedFit::new(problem, end.setting)?;
+        let fit = TimedPathFit::new(problem, end.setting)?;
         // An exact multiple of the degrees in the file stays one.
         let base = match offset {
             AngleOffset::Free => wrapped(fit.offset(&end.design, &shape)).to_degrees(),
@@ -311,7 +336,8 @@ fn judged_with(problem: &Problem, end: &Start, to_curve: Option<CurveErrorRecord
         let crank_deg: Vec<f64> =
             written.crank_deg.iter().map(|deg| base + end.setting.direction * deg).collect();
         let assemblies = vec![end.setting.assembly; crank_deg.len()];
-        return assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), None, to_curve);
+        let frame = frame_of(problem, &linkage, &crank_deg);
+        return assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), frame, to_curve);
     }
     let assemblies = end.positions.iter().map(|[e, u]| assembly_of(&shape, *e, *u)).collect::<Vec<_>>();
     let linkage = shape.linkage(assemblies[0]).ok()?;
@@ -322,4 +348,18 @@ fn judged_with(problem: &Problem, end: &Start, to_curve: Option<CurveErrorRecord
     let frame = (problem.frame_is_free() && reserve(problem, 1000) > 0)
         .then(|| wrapped(space.offset(&end.design)).to_degrees());
     assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), frame, to_curve)
+}
+
+/// Returns the frame of a body at prescribed crank angles, in degrees, where deviations count one by one; `None` where the
+/// one of the least squared errors is wanted.
+fn frame_of(problem: &Problem, linkage: &FourBar, crank_deg: &[f64]) -> Option<f64> {
+    let (task, objective) = (problem.task(), problem.spec().solve.objective);
+    let body = task.body().filter(|_| reserve(problem, 1000) > 0)?;
+    let apart = |(angle, deg): (&Option<f64>, &f64)| {
+        let joints = linkage.position_with(deg.to_radians(), linkage.assembly()).joints()?;
+        Some((*angle)? - (joints.follower_pin - joints.crank_pin).arg())
+    };
+    let apart: Vec<Option<f64>> = body.angles.iter().zip(crank_deg).map(apart).collect();
+    let largest = objective == Objective::MaxDeviation;
+    Some(body.frame_within(&apart, task.weights(), largest).to_degrees())
 }

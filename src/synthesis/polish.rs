@@ -14,11 +14,12 @@ use crate::judge::error::structural_error;
 use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
 use crate::judge::warm::start_at;
 use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
-use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, Goal, solve};
+use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, ConvexResult, Goal, solve};
 use crate::record::{Candidate, Evaluations, Figure};
 use crate::task::Problem;
+use crate::task::forms::design_space::DESIGN;
 use crate::task::forms::start::Start;
-use crate::task::forms::timed::TimedFit;
+use crate::task::forms::timed::{TimedMotionFit, TimedPathFit, WITH_FRAME};
 use crate::task::forms::torus::{MotionFit, PathFit};
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::Objective;
@@ -29,6 +30,8 @@ const FIRST_HOP: u64 = 1 << 62;
 const TOLERANCE_MARGIN: f64 = 1e-9;
 /// Least tolerance aimed at, in parts of the target's size; used for a tolerance of zero.
 const LEAST_TOLERANCE: f64 = 1e-10;
+/// The first half width of the trust box for the frame of a body, in radians.
+const FRAME_TRUST: f64 = 0.1;
 /// Distance of a value from its limit, in parts of max(1, |limit|), within which the limit is active.
 const AT_LIMIT: f64 = 1e-4;
 
@@ -112,6 +115,24 @@ pub fn finish(context: Context<'_>, start: &Start, evaluations: u64) -> Fitted {
     }
 }
 
+/// Returns the options of a fit with the first trust box `trust`, to a target of this size.
+fn options<const N: usize>(
+    trust: [f64; N],
+    size: f64,
+    good_enough: f64,
+    evaluations: u64,
+) -> ConvexOptions<N> {
+    ConvexOptions {
+        max_steps: STEPS,
+        max_evaluations: evaluations,
+        trust,
+        length: size,
+        relative_reduction: 1e-11,
+        feasibility: 1e-9 * size,
+        good_enough,
+    }
+}
+
 /// Fits by sequential convex programming; returns the end and its largest deviation.
 fn convex(
     context: Context<'_>,
@@ -123,33 +144,47 @@ fn convex(
     let problem = context.problem;
     let size = problem.task().size();
     let trust = problem.space(start.setting.side).trust(size);
-    let options = ConvexOptions {
-        max_steps: STEPS,
-        max_evaluations: evaluations,
-        trust,
-        length: size,
-        relative_reduction: 1e-11,
-        feasibility: 1e-9 * size,
-        good_enough,
-    };
+    let options = options(trust, size, good_enough, evaluations);
     let stop = || context.stopped();
     let (setting, mut positions) = (start.setting, start.positions.clone());
-    let result = if positions.is_empty() {
-        let Some(fit) = TimedFit::new(problem, setting) else { return (Fitted::NONE, f64::INFINITY) };
-        solve(&fit, goal, start.design, positions, &options, &stop)
-    } else {
-        if !PathFit::new(problem, setting).settle(&start.design, &mut positions) {
-            return (Fitted::NONE, f64::INFINITY);
+    let body = problem.task().body();
+    if !positions.is_empty() && !PathFit::new(problem, setting).settle(&start.design, &mut positions) {
+        return (Fitted::NONE, f64::INFINITY);
+    }
+    let result = match (positions.is_empty(), body) {
+        (true, None) => {
+            let Some(fit) = TimedPathFit::new(problem, setting) else {
+                return (Fitted::NONE, f64::INFINITY);
+            };
+            solve(&fit, goal, start.design, positions, &options, &stop)
         }
-        match problem.task().body() {
-            None => {
-                let fit = PathFit::new(problem, setting);
-                solve(&fit, goal, start.design, positions, &options, &stop)
+        (true, Some(_)) => {
+            let Some(fit) = TimedMotionFit::new(problem, setting) else {
+                return (Fitted::NONE, f64::INFINITY);
+            };
+            let mut reach = [FRAME_TRUST; WITH_FRAME];
+            reach[..DESIGN].copy_from_slice(&trust);
+            let options = self::options(reach, size, good_enough, evaluations);
+            let end = solve(&fit, goal, fit.unknowns(&start.design), positions, &options, &stop);
+            ConvexResult {
+                x: TimedMotionFit::design(&end.x),
+                state: end.state,
+                objective: end.objective,
+                deviation: end.deviation,
+                violation: end.violation,
+                evaluations: end.evaluations,
+                outcome: end.outcome,
+                multipliers: None,
+                steps: end.steps,
             }
-            Some(_) => {
-                let fit = MotionFit::new(problem, setting);
-                solve(&fit, goal, start.design, positions, &options, &stop)
-            }
+        }
+        (false, None) => {
+            let fit = PathFit::new(problem, setting);
+            solve(&fit, goal, start.design, positions, &options, &stop)
+        }
+        (false, Some(_)) => {
+            let fit = MotionFit::new(problem, setting);
+            solve(&fit, goal, start.design, positions, &options, &stop)
         }
     };
     let usable = !matches!(result.outcome, ConvexOutcome::NoStart | ConvexOutcome::Stopped);

@@ -12,6 +12,9 @@
 //! `WAVE` batches run in parallel and are read in their order; the work that a wave may skip (polishes of ends that are
 //! no better than the best so far) depends on earlier waves only. So the number of threads changes no digit.
 //!
+//! In a motion a batch also takes the linkages of the driving dyad, which is linear ([`super::dyads::driving_dyad`]), with
+//! the follower's dyads that the poses suggest ([`DyadStarts`]).
+//!
 //! *Stopping rule.* Independent batches have to reach the best objective repeatedly ([`super::belief`]). If
 //! requirements are active, at least `BINDING_WAVES` waves have to fit under them; if several answers are wanted, the
 //! search goes on until as many distinct ones are known or `QUIET_WAVES` waves brought no further one.
@@ -22,13 +25,15 @@ use super::constants::variable_projection::{
     POLISHES, PROMISING, QUIET_WAVES, SHORT, SHORT_EVALUATIONS, WAVE,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
+use super::dyads::{Driving, driving_dyad, pair};
+use super::motion::DyadStarts;
 use super::multistart::{LONG_FIT, SHORT_FIT, Spender, by_merit, judged, promise, round};
 use super::polish::{basins_wanted, promising};
 use super::starts::{SLACK_RANGE, Starts, draw_ratios};
 use super::states::{Judged, SearchState, TimedState, of_as_many_points};
 use super::{Context, HitsSoFar, Judging};
 use crate::judge::rank::{exact_cost, searched, sort};
-use crate::mechanism::AssemblyMode;
+use crate::mechanism::{AssemblyMode, Pose};
 use crate::numbers::arithmetic::streams::{Stream, below, stream, uniform};
 use crate::numbers::optimise::compact_lm::{CompactOptions, solve};
 use crate::record::{Candidate, Evaluations, Repeats};
@@ -64,6 +69,8 @@ struct Timed<'a> {
     problem: &'a Problem,
     forms: Vec<(f64, Projection)>,
     starts: Starts<'a>,
+    /// In a motion, the dyads that its poses suggest.
+    dyads: Option<DyadStarts<'a>>,
     requirements: Requirements,
     /// The least and the greatest prescribed angle as written, radians; the full turn of a closed target.
     span: (f64, f64),
@@ -213,6 +220,7 @@ impl<'a> Timed<'a> {
         Some(Timed {
             requirements: problem.requirements(&starts.spaces[0].1),
             starts,
+            dyads: problem.task().body().map(|_| DyadStarts::new(problem)),
             forms,
             span: (low, high),
             exact,
@@ -247,6 +255,27 @@ impl<'a> Timed<'a> {
         Some(x)
     }
 
+    /// Returns the linkages of the driving dyad in each direction with followers that the poses suggest; none for a path.
+    fn driven(&self, first: bool, stream: &mut Stream) -> Vec<Reduced> {
+        let Some(dyads) = &self.dyads else { return Vec::new() };
+        let followers = dyads.dyads(first, stream);
+        let task = self.problem.task();
+        let Timing::Prescribed { crank_angles, .. } = task.timing() else { return Vec::new() };
+        let angles = task.body().map_or(&[][..], |body| &body.angles);
+        let mut driven = Vec::new();
+        for (direction, form) in &self.forms {
+            let given = task.points().iter().zip(angles).zip(crank_angles).zip(task.weights());
+            let given = given.filter_map(|(((point, angle), turn), weight)| {
+                Some(((Pose::new(*point, (*angle)?), direction * turn), *weight))
+            });
+            let ((poses, turns), weights): ((Vec<Pose>, Vec<f64>), Vec<f64>) = given.unzip();
+            let Some(Driving { dyad, angle }) = driving_dyad(&poses, &turns, &weights) else { continue };
+            let pairs = followers.iter().filter_map(|follower| pair(&dyad, follower));
+            driven.extend(pairs.map(|pair| form.at(&pair.shape, angle)));
+        }
+        driven
+    }
+
     /// Returns whether the loop stays closed between the points too, on one assembly: |CB|^2 between (b - c)^2 and (b +
     /// c)^2 over the whole range of crank angles.
     fn stays_closed(&self, form: usize, x: &Reduced) -> bool {
@@ -274,8 +303,9 @@ impl<'a> Timed<'a> {
         let readings = 2 * self.forms.len() as u64;
         let affordable = (allowance / readings).min(DRAWS as u64) as usize;
         out.draws = DRAWS as u64;
-        let draws: Vec<Reduced> =
-            (0..DRAWS).filter_map(|_| self.draw(&mut stream)).take(affordable).collect();
+        let mut draws = self.driven(index == 0, &mut stream);
+        draws.extend((0..DRAWS).filter_map(|_| self.draw(&mut stream)));
+        draws.truncate(affordable);
         if draws.is_empty() {
             return out;
         }

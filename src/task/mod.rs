@@ -33,4 +33,6 @@ pub use builder::ProblemBuilder;
 pub use defect::Defect;
 pub use problem::{Problem, Setting};
 pub(crate) use targets::corners;
-pub use targets::{AngleOffset, Body, Return, SMALLEST_SIZE, Task, TaskError, TaskOptions, Timing};
+pub use targets::{
+    AngleOffset, Body, Return, SMALLEST_SIZE, Task, TaskError, TaskOptions, Timing, best_frame,
+};

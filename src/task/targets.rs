@@ -8,6 +8,7 @@
 //! the ground line A -> B); with *free timing* each is chosen to be nearest. This module uses `mechanism` and
 //! nothing else of the crate.
 
+use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{Complex, MAX_MAGNITUDE};
 
 /// The reference direction of prescribed crank angles.
@@ -64,6 +65,52 @@ pub struct Body {
     pub angle_weight: f64,
     /// The largest angle error accepted at each target, in radians.
     pub tolerances: Option<Vec<f64>>,
+}
+
+/// Returns the angles `apart` (those of the body less those of the coupler) that are given, each with its place and on the
+/// turn that is nearest to their mean direction, and that direction.
+fn about_their_middle(apart: &[Option<f64>], weights: &[f64]) -> (f64, Vec<(usize, f64)>) {
+    let given = || apart.iter().enumerate().filter_map(|(j, apart)| Some((j, (*apart)?)));
+    let middle = given().map(|(j, apart)| Complex::from_polar(weights[j], apart)).sum::<Complex>().arg();
+    (middle, given().map(|(j, apart)| (j, wrapped(apart - middle))).collect())
+}
+
+/// Returns the frame for which the weighted sum of squared angle errors is least: the mean of the angles `apart`, each on
+/// the turn that is nearest to their mean direction.
+pub fn best_frame(apart: &[Option<f64>], weights: &[f64]) -> f64 {
+    let (middle, given) = about_their_middle(apart, weights);
+    let total: f64 = given.iter().map(|(j, _)| weights[*j]).sum();
+    let off: f64 = given.iter().map(|(j, apart)| weights[*j] * apart).sum();
+    wrapped(middle + off / total)
+}
+
+impl Body {
+    /// Returns the frame that suits the angles `apart`, those of the body less those of the coupler, best: the largest error
+    /// is least, in parts of the tolerances if there are any; or, unless `largest` is asked for and if the tolerances can be
+    /// met, the sum of squares within them is.
+    ///
+    /// With a_j apart and tolerances t_j the least largest error is the greatest (a_i - a_j) / (t_i + t_j).
+    pub fn frame_within(&self, apart: &[Option<f64>], weights: &[f64], largest: bool) -> f64 {
+        let (middle, given) = about_their_middle(apart, weights);
+        let tolerance =
+            |j: usize| self.tolerances.as_ref().map_or(1.0, |tolerances| tolerances[j].max(SMALLEST_SIZE));
+        let (mut least, mut nearest) = (0.0, given.first().map_or(0.0, |(_, apart)| *apart));
+        for (i, one) in &given {
+            for (j, other) in &given {
+                let error = (one - other) / (tolerance(*i) + tolerance(*j));
+                if error > least {
+                    (least, nearest) = (error, one - error * tolerance(*i));
+                }
+            }
+        }
+        if largest || least > 1.0 || self.tolerances.is_none() {
+            return wrapped(middle + nearest);
+        }
+        let low = given.iter().map(|(j, apart)| apart - tolerance(*j)).fold(f64::NEG_INFINITY, f64::max);
+        let high = given.iter().map(|(j, apart)| apart + tolerance(*j)).fold(f64::INFINITY, f64::min);
+        let mean = wrapped(best_frame(apart, weights) - middle);
+        wrapped(middle + mean.max(low).min(high))
+    }
 }
 
 /// A list of targets: a path to trace, or poses that a body is to pass.

@@ -8,7 +8,7 @@ use linkwright::internals::numbers::optimise::levenberg_marquardt::{
 use linkwright::internals::synthesis::starts::Starts;
 use linkwright::internals::task::Problem;
 use linkwright::internals::task::forms::start::Start;
-use linkwright::internals::task::forms::timed::TimedFit;
+use linkwright::internals::task::forms::timed::TimedPathFit;
 use linkwright::internals::task::forms::torus::PathFit;
 
 /// Differences of 1e-6 of a number near 1 carry 1e-10 of rounding and 1e-12 of curvature; starts near a toggle
@@ -128,7 +128,7 @@ fn residuals_tangents_and_constraints_agree_with_central_differences() {
             }
             let Some(Start { design, setting, mut positions }) = starts.draw(&mut draws) else { continue };
             let error = if positions.is_empty() {
-                let fit = TimedFit::new(&problem, setting).expect("the timing is prescribed");
+                let fit = TimedPathFit::new(&problem, setting).expect("the timing is prescribed");
                 if fit.cost(&design, &Vec::new()).is_none() {
                     continue;
                 }
@@ -166,7 +166,7 @@ fn a_step_never_leaves_the_bounds_and_the_best_point_is_returned() {
         };
         for start in std::iter::repeat_with(|| starts.draw(&mut draws)).take(400).flatten().take(20) {
             let (x, cost, before, outcome, bounds) = if start.positions.is_empty() {
-                let fit = TimedFit::new(&problem, start.setting).expect("the timing is prescribed");
+                let fit = TimedPathFit::new(&problem, start.setting).expect("the timing is prescribed");
                 let before = fit.cost(&start.design, &start.positions);
                 let end = solve(&fit, start.design, Vec::new(), &options, &|| false);
                 (end.x, end.cost, before, end.outcome, *fit.bounds())

@@ -1,4 +1,4 @@
-//! Reads `[task.motion]`: the poses from their source, with weights and tolerances.
+//! Reads `[task.motion]`: the poses from their source, with weights, tolerances and crank angles.
 
 use super::lists::Lists;
 use super::path::{TaskRead, task_read};
@@ -25,10 +25,6 @@ pub(super) fn motion_of(
             .map(Option::take);
     }
     let [crank_deg, weight, tolerance, tolerance_deg] = columns;
-    if crank_deg.is_some() {
-        let message = "crank angles at poses are not supported yet: the timing of a motion is free";
-        return toml.refuse("task.motion.file", message, "remove the column crank_deg");
-    }
     let unless_set = |key: &str, column: Option<Vec<f64>>| column.filter(|_| !is_set(key));
     let tolerance = unless_set("task.motion.tolerance", tolerance);
     let tolerance_deg = unless_set("task.motion.tolerance_deg", tolerance_deg);
@@ -39,6 +35,7 @@ pub(super) fn motion_of(
     let tolerance_deg =
         lists.tolerances("tolerance_deg", words, motion.tolerance_deg.as_ref(), tolerance_deg)?;
     let weight = lists.weights(motion.weight.as_deref().map(numbers), weight)?;
+    let timing = lists.timing(motion.timing.as_ref(), crank_deg)?;
     let angle_weight = match motion.angle_weight {
         Some(given) => given.0,
         None => {
@@ -56,5 +53,5 @@ pub(super) fn motion_of(
     let body = Some(BodySpec { angle_deg, angle_weight, tolerance_deg });
     let points = std::mem::take(&mut target.points);
     let closed = target.closed;
-    task_read(toml, target, TaskSpec { points, closed, weight, tolerance, timing: None, raw: None, body })
+    task_read(toml, target, TaskSpec { points, closed, weight, tolerance, timing, raw: None, body })
 }

@@ -65,7 +65,7 @@ pub(crate) struct RawMotion {
     /// one of poses and file.
     pub poses: Option<Vec<PoseNumbers>>,
     /// A CSV file, named from the problem file's folder: columns x, y, angle_deg (an empty cell: only the place counts) and
-    /// optionally weight, tolerance, tolerance_deg.
+    /// optionally crank_deg, weight, tolerance, tolerance_deg.
     pub file: Option<String>,
     /// Whether the motion returns to the first pose; where silent, false.
     pub closed: Option<bool>,
@@ -78,6 +78,8 @@ pub(crate) struct RawMotion {
     pub tolerance_deg: Option<OneOrEach>,
     /// Weights of the squared errors, above 0, one a pose; where silent, all poses count alike.
     pub weight: Option<Vec<Number>>,
+    /// Prescribed crank angles; where silent, the timing is free: each pose is met at whatever angle suits it.
+    pub timing: Option<OnlyTable<RawTiming>>,
 }
 
 /// A path to trace: points, a file of points, or a drawing.
@@ -112,7 +114,7 @@ pub(crate) struct RawPath {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Timing")]
 pub(crate) struct RawTiming {
-    /// One a point, degrees, counter-clockwise positive; or a column of the CSV file.
+    /// One a target, degrees, counter-clockwise positive; or a column of the CSV file.
     pub crank_deg: Option<Vec<Number>>,
     /// Their reference direction.
     #[serde(default)]

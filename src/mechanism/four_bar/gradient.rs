@@ -68,6 +68,23 @@ pub fn shape_gradient(frame: &Frame, crank: f64, coupler: f64, offset: Complex) 
     })
 }
 
+/// Computes the gradient of the coupler's direction, dtheta3 by the columns of [`ShapeGradient::shape`] and by the crank
+/// angle; `None` at a toggle.
+///
+/// `crank` = a, `coupler` = b.
+#[inline]
+pub fn coupler_gradient(frame: &Frame, crank: f64, coupler: f64) -> Option<([f64; 9], f64)> {
+    let Frame { crank: e, coupler: u, follower: v } = *frame;
+    let sine = dot(v, turned(u));
+    if sine.abs() <= TOGGLE_SINE {
+        return None;
+    }
+    let per = 1.0 / (coupler * sine);
+    let shape =
+        [-v.re, -v.im, v.re, v.im, -dot(v, e), -dot(v, u), 1.0, 0.0, 0.0].map(|numerator| numerator * per);
+    Some((shape, -dot(v, turned(e)) * crank * per))
+}
+
 /// Computes dP/dphi alone, the last part of [`shape_gradient`]; `None` at a toggle.
 #[inline]
 pub fn by_crank_angle(frame: &Frame, crank: f64, coupler: f64, offset: Complex) -> Option<Complex> {

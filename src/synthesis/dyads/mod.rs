@@ -17,6 +17,7 @@
 //! | `circle` | the best circle of a pin, by Kasa's fit and Newton's iteration |
 //! | `conics` | the common points of two conics, by the resultant |
 //! | `curve` | four poses: the circle-point and centre-point curves, by the compatibility linkage |
+//! | `driving` | poses with given crank angles: the driving dyad |
 //! | `kernel` | five poses and more: linear rows, their kernel, and two conics in it |
 //! | `map` | the map of the body plane: the error of the best circle at each place of a pin |
 //! | `pair` | two dyads as a four-bar |
@@ -32,6 +33,7 @@
 mod circle;
 mod conics;
 mod curve;
+mod driving;
 mod kernel;
 mod map;
 mod pair;
@@ -47,6 +49,7 @@ mod tests;
 
 pub use circle::{CircleFit, circle_fit};
 pub use curve::through_four_curve;
+pub use driving::{Driving, driving_dyad};
 pub use kernel::{nearest_in_kernel, through_five, through_random_five};
 pub use map::{CircleMap, circle_minima};
 pub use pair::{Pair, pair};

@@ -29,7 +29,8 @@ use crate::record::{Candidate, Repeats};
 use crate::task::Problem;
 use crate::task::forms::start::Start;
 use family::{climb, freedom};
-use starts::{DyadStarts, least_sine, swapped};
+pub(super) use starts::DyadStarts;
+use starts::{least_sine, swapped};
 
 struct Motion<'a> {
     starts: DyadStarts<'a>,

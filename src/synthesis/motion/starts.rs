@@ -25,7 +25,7 @@ const SAME_PIN: f64 = 1e-6;
 const CURVE: usize = 400;
 
 /// A generator of starts for the poses of a problem.
-pub(super) struct DyadStarts<'a> {
+pub(in crate::synthesis) struct DyadStarts<'a> {
     problem: &'a Problem,
     /// The poses of the targets that give an angle, with their weights.
     poses: Vec<Pose>,
@@ -35,7 +35,7 @@ pub(super) struct DyadStarts<'a> {
 }
 
 impl<'a> DyadStarts<'a> {
-    pub(super) fn new(problem: &'a Problem) -> Self {
+    pub(in crate::synthesis) fn new(problem: &'a Problem) -> Self {
         let task = problem.task();
         let angles = task.body().map_or(&[][..], |body| &body.angles);
         let given = task.points().iter().zip(angles).zip(task.weights());
@@ -46,7 +46,7 @@ impl<'a> DyadStarts<'a> {
     }
 
     /// Returns the dyads of a round: those that the poses suggest in the first one, else drawn ones.
-    pub(super) fn dyads(&self, first: bool, stream: &mut Stream) -> Vec<Dyad> {
+    pub(in crate::synthesis) fn dyads(&self, first: bool, stream: &mut Stream) -> Vec<Dyad> {
         let poses = self.poses.as_slice();
         let mut dyads = Vec::new();
         if first {

@@ -3,25 +3,35 @@
 //!
 //! The offset is an unknown ([`AngleOffset::Free`]), zero ([`AngleOffset::Fixed`]) or the direction of the
 //! ground line ([`AngleOffset::Ground`], which adds its derivative (<i g, dB - dA>)/|AB|).
+//!
+//! In a motion a target has a third row, the error of the body's angle times the length W that a radian counts like, W
+//! (theta_j - arg u_j - beta). The frame beta, the angle from the coupler's direction to the body's x axis, is an unknown
+//! behind those of the design. The row is zero for a target without an angle.
 
 use super::design_space::{ChainRule, DESIGN, Design, DesignSpace, SHAPE, Shape, unit};
 use super::rows::{Motion, Requirements};
-use super::torus::Positions;
+use super::torus::{ANGLE_ROW, Positions, angle_residual};
 use crate::mechanism::effort::computed;
-use crate::mechanism::four_bar::gradient::{Frame, shape_gradient};
+use crate::mechanism::four_bar::gradient::{Frame, coupler_gradient, shape_gradient};
 use crate::mechanism::{Complex, point, turned, xy};
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
 };
-use crate::task::{AngleOffset, Problem, Setting, Timing};
+use crate::task::{AngleOffset, Body, Problem, Setting, Timing, best_frame};
 use std::f64::consts::TAU;
 
-/// Least squares over the design vector for prescribed timing.
+/// The number of unknowns of a motion: the design and the frame of the body.
+pub const WITH_FRAME: usize = DESIGN + 1;
+
+/// Least squares over the design vector for prescribed timing, with N unknowns and R rows a target: [`DESIGN`] and 2 of a
+/// path, [`WITH_FRAME`] and 3 of a motion.
 #[derive(Clone, Debug)]
-pub struct TimedFit<'a> {
+pub struct TimedFit<'a, const N: usize, const R: usize> {
     problem: &'a Problem,
     setting: Setting,
     space: DesignSpace,
+    /// Those of the design, and of the frame none.
+    bounds: [(f64, f64); N],
     requirements: Requirements,
     /// The angles direction psi_j, in radians.
     angles: Vec<f64>,
@@ -30,16 +40,24 @@ pub struct TimedFit<'a> {
     offset: AngleOffset,
 }
 
-impl<'a> TimedFit<'a> {
+/// The fit of a path.
+pub type TimedPathFit<'a> = TimedFit<'a, DESIGN, 2>;
+/// The fit of a motion.
+pub type TimedMotionFit<'a> = TimedFit<'a, WITH_FRAME, 3>;
+
+impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
     /// Creates the fit of a problem in a setting; `None` for free timing.
     pub fn new(problem: &'a Problem, setting: Setting) -> Option<Self> {
         let Timing::Prescribed { crank_angles, offset } = problem.task().timing() else { return None };
         let space = problem.space(setting.side);
         let requirements = problem.requirements(&space);
+        let mut bounds = [(f64::NEG_INFINITY, f64::INFINITY); N];
+        bounds[..DESIGN].copy_from_slice(space.bounds());
         Some(TimedFit {
             problem,
             setting,
             space,
+            bounds,
             requirements,
             angles: crank_angles.iter().map(|psi| setting.direction * psi).collect(),
             phases: problem.phases(setting.direction),
@@ -55,6 +73,36 @@ impl<'a> TimedFit<'a> {
     /// Returns the requirements.
     pub fn requirements(&self) -> &Requirements {
         &self.requirements
+    }
+
+    /// Returns the unknowns at a design; the frame of a body is that of the least errors, 0 if the loop is open at a target.
+    pub fn unknowns(&self, design: &Design) -> [f64; N] {
+        let mut x = [0.0; N];
+        x[..DESIGN].copy_from_slice(design);
+        if let Some(frame) = x.get_mut(DESIGN) {
+            *frame = self.frame_of(design).unwrap_or(0.0);
+        }
+        x
+    }
+
+    /// Returns the design among the unknowns.
+    pub fn design(x: &[f64; N]) -> Design {
+        std::array::from_fn(|i| x[i])
+    }
+
+    /// Returns the frame of the body for which the weighted sum of squared angle errors is least.
+    fn frame_of(&self, design: &Design) -> Option<f64> {
+        let body = self.problem.task().body()?;
+        let shape = self.space.shape(design)?;
+        let kernel = shape.kernel(self.setting.assembly);
+        let turn = Complex::from_polar(1.0, self.offset(design, &shape));
+        let apart = |(phase, angle): (&Complex, &Option<f64>)| {
+            let crank = phase * turn;
+            let at = kernel.at(crank.re, crank.im);
+            Some((*angle)? - (point(at.follower_pin) - point(at.crank_pin)).arg())
+        };
+        let apart: Vec<Option<f64>> = self.phases.iter().zip(&body.angles).map(apart).collect();
+        Some(best_frame(&apart, self.problem.task().weights())).filter(|frame| frame.is_finite())
     }
 
     /// Returns the angle added to every prescribed one.
@@ -94,7 +142,7 @@ impl<'a> TimedFit<'a> {
         mut row: [f64; SHAPE],
         by_crank: f64,
         by_ground_angle: Complex,
-    ) -> Design {
+    ) -> [f64; N] {
         let mut by_offset = 0.0;
         match self.offset {
             AngleOffset::Free => by_offset = by_crank,
@@ -106,11 +154,18 @@ impl<'a> TimedFit<'a> {
                 row[3] += by_crank * by_ground_angle.im;
             }
         }
-        rule.by_design(&row, by_offset)
+        let mut out = [0.0; N];
+        out[..DESIGN].copy_from_slice(&rule.by_design(&row, by_offset));
+        out
+    }
+
+    /// Returns the body of a motion.
+    fn body(&self) -> Option<&Body> {
+        self.problem.task().body().filter(|_| R > ANGLE_ROW)
     }
 }
 
-impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
+impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N, R> {
     /// The points have no unknowns of their own: no positions.
     type State = Positions;
 
@@ -118,18 +173,20 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
         self.angles.len()
     }
 
-    fn bounds(&self) -> &[(f64, f64); DESIGN] {
-        self.space.bounds()
+    fn bounds(&self) -> &[(f64, f64); N] {
+        &self.bounds
     }
 
-    fn cost(&self, x: &Design, _: &Positions) -> Option<f64> {
+    fn cost(&self, unknowns: &[f64; N], _: &Positions) -> Option<f64> {
+        let x = &Self::design(unknowns);
         let shape = self.space.shape(x)?;
         let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(x, &shape));
-        let task = self.problem.task();
+        let (task, body) = (self.problem.task(), self.body());
         computed(task.len());
         let mut cost = 0.0;
-        for ((phase, target), weight) in self.phases.iter().zip(task.points()).zip(task.weights()) {
+        let targets = self.phases.iter().zip(task.points()).zip(task.weights());
+        for (j, ((phase, target), weight)) in targets.enumerate() {
             let crank = phase * turn;
             let at = kernel.at(crank.re, crank.im);
             // At the toggle itself there is no derivative, and beyond it the loop is open.
@@ -138,18 +195,24 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
             }
             let (x, y) = (target.re - at.coupler_point[0], target.im - at.coupler_point[1]);
             cost += weight * (x * x + y * y);
+            if let Some(body) = body {
+                let coupler = point(at.follower_pin) - point(at.crank_pin);
+                cost += weight * angle_residual(body, j, coupler, unknowns[N - 1]).powi(2);
+            }
         }
         cost.is_finite().then_some(cost)
     }
 
-    fn linearise(&self, x: &Design, _: &Positions, each: &mut dyn FnMut(&PointBlock<DESIGN>)) -> bool {
+    fn linearise(&self, unknowns: &[f64; N], _: &Positions, each: &mut dyn FnMut(&PointBlock<N, R>)) -> bool {
+        let x = &Self::design(unknowns);
         let Some(shape) = self.space.shape(x) else { return false };
         let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(x, &shape));
-        let task = self.problem.task();
+        let (task, body) = (self.problem.task(), self.body());
         let (rule, by_ground_angle) = (self.space.chain_rule(x, &shape), Self::by_ground_angle(&shape));
         computed(task.len());
-        for ((phase, target), weight) in self.phases.iter().zip(task.points()).zip(task.weights()) {
+        let targets = self.phases.iter().zip(task.points()).zip(task.weights());
+        for (j, ((phase, target), weight)) in targets.enumerate() {
             let crank = phase * turn;
             let at = kernel.at(crank.re, crank.im);
             let [c, d, p] = [at.crank_pin, at.follower_pin, at.coupler_point].map(point);
@@ -161,21 +224,40 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
             let Some(gradient) = shape_gradient(&frame, shape.crank, shape.coupler, shape.offset) else {
                 return false;
             };
-            let jacobian = [|z: Complex| -z.re, |z: Complex| -z.im].map(|component| {
-                let (row, by_crank) = (gradient.shape.map(component), component(gradient.crank_angle));
-                self.by_design(&rule, row, by_crank, by_ground_angle)
-            });
-            let residual = target - p;
-            each(&PointBlock { residual: xy(residual), jacobian, tangent: [0.0, 0.0], weight: *weight });
+            let mut block = PointBlock {
+                residual: [0.0; R],
+                jacobian: [[0.0; N]; R],
+                tangent: [0.0; R],
+                weight: *weight,
+            };
+            block.residual[..ANGLE_ROW].copy_from_slice(&xy(target - p));
+            let components = [|z: Complex| -z.re, |z: Complex| -z.im];
+            for (row, component) in block.jacobian.iter_mut().zip(components) {
+                let (by_shape, by_crank) = (gradient.shape.map(component), component(gradient.crank_angle));
+                *row = self.by_design(&rule, by_shape, by_crank, by_ground_angle);
+            }
+            if let Some(body) = body.filter(|body| body.angles[j].is_some()) {
+                let Some((by_shape, by_crank)) = coupler_gradient(&frame, shape.crank, shape.coupler) else {
+                    return false;
+                };
+                let weight = body.angle_weight;
+                let by_shape = by_shape.map(|by| -weight * by);
+                block.residual[ANGLE_ROW] = angle_residual(body, j, frame.coupler, unknowns[N - 1]);
+                block.jacobian[ANGLE_ROW] =
+                    self.by_design(&rule, by_shape, -weight * by_crank, by_ground_angle);
+                block.jacobian[ANGLE_ROW][N - 1] = -weight;
+            }
+            each(&block);
         }
         true
     }
 
-    fn retract(&self, _: &Design, _: &Positions, _: &[f64], _: &Design, _: &mut Positions) -> bool {
+    fn retract(&self, _: &[f64; N], _: &Positions, _: &[f64], _: &[f64; N], _: &mut Positions) -> bool {
         true
     }
 
-    fn constraints(&self, x: &Design, _: &Positions, each: &mut EachConstraint<'_, DESIGN>) {
+    fn constraints(&self, unknowns: &[f64; N], _: &Positions, each: &mut EachConstraint<'_, N>) {
+        let x = &Self::design(unknowns);
         let Some(shape) = self.space.shape(x) else { return };
         let (rule, by_ground_angle) = (self.space.chain_rule(x, &shape), Self::by_ground_angle(&shape));
         self.requirements.rows(self.setting.aim, &shape, &self.motion(x, &shape), &mut |row| {

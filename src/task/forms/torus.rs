@@ -40,7 +40,7 @@ use std::f64::consts::TAU;
 pub type Positions = Vec<[Complex; 2]>;
 
 /// The row of the body's angle among those of a target.
-const ANGLE_ROW: usize = 2;
+pub(super) const ANGLE_ROW: usize = 2;
 /// Most Newton steps that bring a position back to its curve; each squares the miss.
 const RETURN_STEPS: usize = 12;
 /// Tolerance for a position on its curve: its miss over the largest link squared.
@@ -426,7 +426,7 @@ impl<const R: usize> TorusFit<'_, R> {
 }
 
 /// Returns W (theta - arg u - beta) of a target, the angle within half a turn; zero if it has no angle.
-fn angle_residual(body: &Body, j: usize, coupler: Complex, frame: f64) -> f64 {
+pub(super) fn angle_residual(body: &Body, j: usize, coupler: Complex, frame: f64) -> f64 {
     body.angles[j].map_or(0.0, |angle| body.angle_weight * wrapped(angle - coupler.arg() - frame))
 }
 

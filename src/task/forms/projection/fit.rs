@@ -13,14 +13,19 @@
 //! limit is active, |K| = rho(p, q, r) is a product of powers and K moves with it; of a complex K only the turn
 //! remains: the real column i K. J^T r is half the exact gradient of the reduced cost: the term that Kaufman leaves out
 //! is orthogonal to r.
+//!
+//! In a motion each angle adds a row sqrt(w) W (theta - arg u - beta), whose derivative is -sqrt(w) W (dtheta3/dx less its
+//! weighted mean).
 
-use super::{AngleRole, GroundKnown, Origin, Projection, Reduced, SINGULAR, UNKNOWNS};
+use super::{AngleRole, BodyColumns, GroundKnown, Origin, Projection, Reduced, SINGULAR, UNKNOWNS};
 use crate::mechanism::effort::computed;
-use crate::mechanism::{AssemblyMode, Complex, turned};
+use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::{AssemblyMode, Complex, dot, turned};
 use crate::numbers::arithmetic::complex_lanes::{Column, ComplexLanes};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 use crate::numbers::optimise::compact_lm::{CompactLeastSquares, Normal};
+use crate::task::best_frame;
 use crate::task::forms::design_space::{Shape, unit};
 use std::array::from_fn;
 
@@ -80,6 +85,8 @@ pub struct ProjectedFit<'a> {
     rest: Column,
     /// The columns sqrt(w) m_x.
     moved: [Column; UNKNOWNS],
+    /// The errors of the body's angle, in radians; empty for a path.
+    turned_off: Vec<Option<f64>>,
     linear: Option<Linear>,
 }
 
@@ -98,6 +105,7 @@ impl<'a> ProjectedFit<'a> {
             a_off: column(),
             rest: column(),
             moved: [column(), column(), column(), column()],
+            turned_off: Vec::new(),
             linear: None,
         }
     }
@@ -349,6 +357,53 @@ impl<'a> ProjectedFit<'a> {
     }
 }
 
+impl ProjectedFit<'_> {
+    /// Computes the errors of the body's angle at the positions; returns their part of the cost, over the weights' sum.
+    fn turned(&mut self, body: &BodyColumns) -> f64 {
+        let (u, weights) = (&self.u, &self.form.columns.weight);
+        let apart = body.angle.iter().enumerate();
+        let apart: Vec<Option<f64>> =
+            apart.map(|(j, angle)| angle.map(|angle| angle - u[1][j].atan2(u[0][j]))).collect();
+        let frame = best_frame(&apart, weights);
+        self.turned_off = apart.iter().map(|apart| apart.map(|apart| wrapped(apart - frame))).collect();
+        let off = self.turned_off.iter().zip(weights);
+        body.length * body.length * off.map(|(off, w)| w * off.unwrap_or(0.0).powi(2)).sum::<f64>()
+    }
+
+    /// Adds the rows of the body's angle to J^T J and J^T r.
+    fn add_turned(&self, body: &BodyColumns, at: &Linear, normal: &mut Normal<UNKNOWNS>) {
+        let form = self.form;
+        let [p, q, r] = at.ratio;
+        let sense = match form.role {
+            AngleRole::None | AngleRole::Ground => 0.0,
+            AngleRole::Crank => 1.0,
+            AngleRole::Both => -1.0,
+        };
+        let swing = |j: usize| {
+            let [e, u] = [&self.e, &self.u].map(|column| Complex::new(column[0][j], column[1][j]));
+            let v = e * p + u * q - 1.0;
+            let by = -self.by_height[j];
+            [by * p * dot(v, e), by * q * dot(v, u), -by * r * r, by * p * dot(v, turned(e)) * sense]
+        };
+        let given = || {
+            let off = self.turned_off.iter().zip(&form.columns.weight).enumerate();
+            off.filter_map(|(j, (off, weight))| Some((swing(j), (*off)?, *weight)))
+        };
+        let mut mean = [0.0; UNKNOWNS];
+        for (swing, _, weight) in given() {
+            (0..UNKNOWNS).for_each(|x| mean[x] += swing[x] * weight / body.weight);
+        }
+        let scale = form.total_weight * body.length * body.length;
+        for (swing, off, weight) in given() {
+            let row: [f64; UNKNOWNS] = from_fn(|x| swing[x] - mean[x]);
+            for x in 0..UNKNOWNS {
+                (0..UNKNOWNS).for_each(|y| normal.matrix[x][y] += scale * weight * row[x] * row[y]);
+                normal.gradient[x] -= scale * weight * row[x] * off;
+            }
+        }
+    }
+}
+
 impl Projection {
     /// Returns the crank's length at an active limit, with d ln / d(ln p, ln q, ln r); `None` if `length` is inside.
     #[inline]
@@ -386,20 +441,26 @@ impl CompactLeastSquares<UNKNOWNS> for ProjectedFit<'_> {
         let (turn, direction) = (Complex::from_polar(1.0, turn), Complex::from_polar(1.0, theta));
         let weight = self.form.total_weight;
         computed(self.form.points());
-        vectorised(
+        let cost = vectorised(
             #[inline(always)]
             || self.project(ratio, turn, direction),
-        )
-        .map(|cost| cost * weight)
+        )?;
+        let form = self.form;
+        let cost = form.body.as_ref().map_or(cost, |body| cost + self.turned(body));
+        Some(cost * weight)
     }
 
     fn normal(&mut self) -> Normal<UNKNOWNS> {
         let nothing = Normal { matrix: [[0.0; UNKNOWNS]; UNKNOWNS], gradient: [0.0; UNKNOWNS] };
         let Some(linear) = self.linear else { return nothing };
         computed(self.form.points());
-        vectorised(
+        let mut normal = vectorised(
             #[inline(always)]
             || self.linearised(&linear),
-        )
+        );
+        if let Some(body) = &self.form.body {
+            self.add_turned(body, &linear, &mut normal);
+        }
+        normal
     }
 }

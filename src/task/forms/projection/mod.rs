@@ -30,6 +30,14 @@
 //! the two ends is taken; the physical fit has to follow. Pivot boxes and limits of the coupler point are left to it as
 //! well.
 //!
+//! In a motion the error of the body's angle adds to the cost of target j, with u_j seen from the ground line,
+//!
+//! ```text
+//! w_j (W (theta_j - arg u_j - beta))^2,    beta = the weighted mean of theta_j - arg u_j
+//! ```
+//!
+//! W the length that a radian counts like. The frame beta is linear too; it takes up the direction of G.
+//!
 //! Weights are normalised to the sum 1 inside; every cost returned is the weighted sum of squares.
 
 mod fit;
@@ -38,12 +46,13 @@ mod screen;
 pub use fit::{ProjectedFit, Solution};
 pub use screen::Batch;
 
+use super::design_space::Shape;
 use super::linear_fit::KnownPivots;
 use crate::mechanism::{Complex, CouplerSide};
 use crate::numbers::arithmetic::complex_lanes::{Column, column};
 use crate::numbers::arithmetic::lane::LANES;
 use crate::task::spec::Limits;
-use crate::task::{AngleOffset, Problem, Timing};
+use crate::task::{AngleOffset, Body, Problem, Timing};
 
 /// Number of unknowns: ln p, ln q, ln r and the angle.
 pub const UNKNOWNS: usize = 4;
@@ -105,6 +114,35 @@ struct Columns {
     root_weight: Vec<f64>,
 }
 
+/// The body of a motion, one value a target.
+#[derive(Clone, Debug)]
+struct BodyColumns {
+    /// The angle theta_j, in radians.
+    angle: Vec<Option<f64>>,
+    /// The weight w_j, 0 without an angle, times e^{-i theta_j}.
+    back: Vec<Complex>,
+    /// The sum of these weights.
+    weight: f64,
+    /// W, the length that an angle error of one radian counts like.
+    length: f64,
+}
+
+impl BodyColumns {
+    fn of(body: &Body, weight: &[f64]) -> BodyColumns {
+        let given = || body.angles.iter().zip(weight);
+        BodyColumns {
+            angle: body.angles.clone(),
+            back: given()
+                .map(|(angle, w)| {
+                    angle.map_or(Complex::new(0.0, 0.0), |angle| Complex::from_polar(*w, -angle))
+                })
+                .collect(),
+            weight: given().filter(|(angle, _)| angle.is_some()).map(|(_, w)| w).sum(),
+            length: body.angle_weight,
+        }
+    }
+}
+
 /// The reduced form of a problem with prescribed timing, in one direction of the crank.
 #[derive(Clone, Debug)]
 pub struct Projection {
@@ -120,6 +158,7 @@ pub struct Projection {
     limits: [Limits; 4],
     points: usize,
     columns: Columns,
+    body: Option<BodyColumns>,
     /// The sum of the weights as given.
     total_weight: f64,
     offset_free: bool,
@@ -198,6 +237,7 @@ impl Projection {
             bounds: ratio_bounds(problem, limits, role),
             limits: [limits[1], limits[0], limits[2], limits[3]],
             points: task.len(),
+            body: task.body().map(|body| BodyColumns::of(body, &weight)),
             theta: theta.unwrap_or(0.0),
             origin,
             ground,
@@ -222,6 +262,24 @@ impl Projection {
     /// Returns whether one of the unknowns is an angle.
     pub fn has_angle(&self) -> bool {
         self.role != AngleRole::None
+    }
+
+    /// Returns the point of the form at a shape whose crank stands at `turn` where the prescribed angle is 0, both from the x
+    /// axis, brought within the bounds.
+    pub fn at(&self, shape: &Shape, turn: f64) -> Reduced {
+        let [ground, crank, coupler, follower] = shape.links();
+        let direction = (shape.follower_pivot - shape.crank_pivot).arg();
+        let angle = match self.role {
+            AngleRole::None => 0.0,
+            AngleRole::Crank => turn - direction,
+            AngleRole::Ground => turn,
+            AngleRole::Both => direction,
+        };
+        let mut x = [(crank / ground).ln(), (coupler / ground).ln(), (follower / ground).ln(), angle];
+        for (value, (low, high)) in x.iter_mut().zip(&self.bounds) {
+            *value = value.max(*low).min(*high);
+        }
+        x
     }
 
     /// Returns the turn of the crank against the prescribed angles, and the direction of the ground line, as angles.

@@ -11,6 +11,9 @@
 //!
 //! The column of u is q u, which needs no division; both assemblies come from one root. Through differences of sums the
 //! cost is accurate to 1e-15 <T, T>: enough to choose starts, not to end a fit.
+//!
+//! In a motion the angle's errors enter by their chords, which need no angle: W^2 sum w |e^{i (theta - beta)} - u|^2 is
+//! 2 W^2 (sum w - |sum w e^{-i theta} u|) at the best frame beta.
 
 use super::{GroundKnown, Origin, Projection, Reduced, SINGULAR};
 use crate::mechanism::effort::computed;
@@ -66,6 +69,8 @@ struct Sums<L> {
     phase_u: ComplexLanes<L>,
     /// The sum of w conj(u) T.
     u_target: ComplexLanes<L>,
+    /// The sum of w e^{-i theta} u over the targets with an angle.
+    turned: ComplexLanes<L>,
 }
 
 impl<L: Lane> Sums<L> {
@@ -150,7 +155,7 @@ impl Projection {
         let half = s(0.5) * (q_sq - r * r);
         let mut gap = s(f64::INFINITY);
         let zero = ComplexLanes::splat(Complex::new(0.0, 0.0));
-        let mut sums = [Sums { u: zero, phase_u: zero, u_target: zero }; 2];
+        let mut sums = [Sums { u: zero, phase_u: zero, u_target: zero, turned: zero }; 2];
         let c = &self.columns;
         for j in 0..self.points {
             let phase = Complex::new(c.phase[0][j], c.phase[1][j]);
@@ -170,6 +175,11 @@ impl Projection {
             let (phase, target) = (ComplexLanes::splat(phase * weight), ComplexLanes::splat(target * weight));
             sums[0].add(up, s(weight), phase, target);
             sums[1].add(down, s(weight), phase, target);
+            if let Some(body) = &self.body {
+                let back = ComplexLanes::splat(body.back[j]);
+                sums[0].turned = sums[0].turned + back * up;
+                sums[1].turned = sums[1].turned + back * down;
+            }
         }
         sums.map(|sums| self.reduced_cost(drawn, &sums, gap))
     }
@@ -213,7 +223,15 @@ impl Projection {
             GroundKnown::Nothing | GroundKnown::Direction => self.limited(drawn.ratio, along * left.recip()),
         };
         let cost = rest - s(2.0) * length * along + length * length * left;
-        let cost = cost.positive_part() * s(self.total_weight);
+        let cost = match &self.body {
+            None => cost.positive_part(),
+            Some(body) => {
+                let along = sums.turned.norm_sq().sqrt() * q.recip();
+                let chords = (s(body.weight) - along).positive_part();
+                cost.positive_part() + s(2.0 * body.length * body.length) * chords
+            }
+        };
+        let cost = cost * s(self.total_weight);
         let never = s(f64::INFINITY);
         let least = s(f64::MIN_POSITIVE);
         let cost = gap.at_least(least, cost, never);
