@@ -31,4 +31,5 @@ mod rungs;
 mod search;
 mod snapping;
 mod suite;
+mod timed_motion;
 mod timed_search;

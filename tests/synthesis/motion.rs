@@ -19,21 +19,21 @@ use linkwright::{Candidate, Context, CouplerSide, Job, Problem, Record, run};
 use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
-fn solved(spec: ProblemSpec) -> Record {
+pub(crate) fn solved(spec: ProblemSpec) -> Record {
     let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
     run(&Job::new("motion", spec), &context).expect("a run").record
 }
 
-fn wrapped(angle: f64) -> f64 {
+pub(crate) fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
 /// The problem of these poses.
-fn problem(poses: &[(Complex, f64)], lines: &str) -> ProblemSpec {
+pub(crate) fn problem(poses: &[(Complex, f64)], lines: &str) -> ProblemSpec {
     parse(&text(poses, lines)).spec
 }
 
-const ALONE: &str = "[solve]\ncandidates = 1\nadvice = false\n";
+pub(crate) const ALONE: &str = "[solve]\ncandidates = 1\nadvice = false\n";
 
 /// The errors of a candidate by circles that meet, without any of the library's kinematics.
 fn recomputed(candidate: &Candidate, spec: &ProblemSpec) -> (f64, f64, f64) {
@@ -65,7 +65,7 @@ fn recomputed(candidate: &Candidate, spec: &ProblemSpec) -> (f64, f64, f64) {
 }
 
 /// Checks the figures of a record's candidates against [`recomputed`], and the record by `verify`.
-fn assert_true(record: &Record) {
+pub(crate) fn assert_true(record: &Record) {
     let spec = &record.problem.resolved;
     let size = spec.task.to_task().expect("a task").size();
     for candidate in &record.candidates {
