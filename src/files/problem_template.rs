@@ -70,7 +70,7 @@ fn motion_template(name: &str, poses_file: Option<&str>) -> String {
         None => SAMPLE_POSES.to_owned(),
         Some(file) => format!(
             "# The poses to pass, in order: columns x,y,angle_deg (an empty cell asks for the place alone) and optionally\n\
-             # weight, tolerance, tolerance_deg.\n\
+             # crank_deg, weight, tolerance, tolerance_deg.\n\
              file = {}\n\
              closed = false                  # true: the motion returns to the first pose\n\
              # tolerance = 2                 # the largest error of the place accepted at any pose\n\
@@ -84,7 +84,8 @@ fn motion_template(name: &str, poses_file: Option<&str>) -> String {
     let design = DESIGN.replace(ANY_COUPLER, PINS_APART);
     // A body that is moved by hand needs no crank that turns fully.
     let requirements = requirements().replace("type = ", "# type = ");
-    head + &poses + &design + BODY + REQUIRE + &requirements + SOLVE + END
+    let timing = TIMING.replace("task.path", "task.motion").replace("point", "pose");
+    head + &poses + &timing + &design + BODY + REQUIRE + &requirements + SOLVE + END
 }
 
 fn path_template(name: &str, points_file: Option<&str>) -> String {
