@@ -25,6 +25,11 @@ pub enum NoCertificate {
     /// The timing is free: each point is met at the nearest crank angle.
     #[error("no certificate is available for free timing: give the points crank angles (task.path.timing)")]
     FreeTiming,
+    /// The task is a motion: a body's angles count beside its places.
+    #[error(
+        "no certificate is available for poses of a body: the proof covers the places of a path alone, without angles"
+    )]
+    Motion,
     /// The objective is not the plain sum of squares.
     #[error("no certificate is available yet for weighted points or for objective = \"max-deviation\"")]
     OtherObjective,
@@ -88,6 +93,9 @@ impl Subject {
         let spec = &record.problem.resolved;
         let best = record.candidates.first().ok_or(NoCertificate::NoCandidate)?.error.sum_sq;
         let path = &spec.task;
+        if path.body.is_some() {
+            return Err(NoCertificate::Motion);
+        }
         let timing = path.timing.as_ref().ok_or(NoCertificate::FreeTiming)?;
         let problem =
             crate::task::Problem::new(spec.clone()).map_err(|e| NoCertificate::Problem(e.to_string()))?;
