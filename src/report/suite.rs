@@ -112,8 +112,7 @@ pub fn suite_markdown(suite: &Suite) -> String {
     out.push_str(&paragraph(TIMES));
     out.extend(is_certified(&paths).then(|| paragraph(PROVED)));
     out.push_str(&bullets(&proofs(suite)));
-    let notes: Vec<String> = notes(suite).iter().map(|note| clean(note)).collect();
-    out.push_str(&bullets(&notes));
+    out.push_str(&bullets(&notes(suite)));
     if has_paths {
         out.push_str("## Beside them\n\n");
         out.push_str(&beside(&paths).markdown());

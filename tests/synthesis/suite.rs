@@ -262,6 +262,7 @@ fn answers_of_a_motion_are_compared_by_their_objective_and_no_population_is_besi
     ] {
         assert!(text.contains(said) && page.contains(said), "{said}\n{text}\n{page}");
     }
+    assert!(page.trim_end().ends_with("to compare)."), "no sentence is cut: {page}");
     for other in ["sum of sq", "to curve", "printed", "genetic |"] {
         assert!(!text.contains(other) && !page.contains(other), "{other}\n{text}\n{page}");
     }

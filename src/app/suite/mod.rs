@@ -101,6 +101,10 @@ pub enum SuiteError {
 /// The number of poses from which on only finitely many four-bars meet them (Burmester 1888).
 const FINITELY_MANY: usize = 5;
 
+/// The reason why fewer poses have nothing to compare with.
+const OF_A_FAMILY: &str = "no objective under [expect] (a whole family of linkages meets fewer than five poses exactly, so \
+    that there is no least error to compare)";
+
 /// Returns what a problem's answers are compared with, or the reason why nothing is known that they could be.
 fn known(file: &ProblemFile) -> Result<Known, &'static str> {
     let expect = file.expect.as_ref();
@@ -113,10 +117,7 @@ fn known(file: &ProblemFile) -> Result<Known, &'static str> {
         Some(best_known_objective) => {
             Ok(Known::Motion { best_known_objective, angle_weight: body.angle_weight })
         }
-        None if body.angle_deg.len() < FINITELY_MANY => {
-            Err("no objective under [expect] (a whole family of linkages \
-            meets fewer than five poses exactly, so that there is no least error to compare)")
-        }
+        None if body.angle_deg.len() < FINITELY_MANY => Err(OF_A_FAMILY),
         None => Err("no objective under [expect]"),
     }
 }
