@@ -448,7 +448,7 @@ def suite(
     Args:
         filter: only problems whose name or file name holds this.
         seeds: seeds 1 to this.
-        problems: a folder of problem files; where silent, the literature's.
+        problems: a folder of problem files, of paths and of motions; where silent, the literature's.
         certify: proves the best answer of each problem that can be proved.
         progress: as for :func:`linkwright.synth`.
 

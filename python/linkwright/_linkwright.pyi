@@ -85,6 +85,9 @@ class Problem:
     def resolved(self) -> dict[str, Any]:
         """Every key with its default filled in."""
     @property
+    def best_known_objective(self) -> float | None:
+        """The least objective known, of a motion that states it."""
+    @property
     def best_known_sum_sq(self) -> float | None:
         """The least sum of squares known, of a problem that states it."""
     @property

@@ -99,6 +99,7 @@ def motion(
     angle_weight: float | None = None,
     tolerance: Any = None,
     tolerance_deg: Any = None,
+    weight: Any = None,
     exact: Any = None,
     closed: bool | None = None,
     crank_deg: Any = None,
@@ -117,6 +118,7 @@ def motion(
             asked for. Or the path of a CSV file.
         angle_weight: a length: an angle error of 1 rad counts like this length.
         tolerance, tolerance_deg: the largest errors of position and angle accepted.
+        weight: the weights of the poses' squared errors, shape (n,).
         exact: the indices (from 0) of poses that must be met exactly.
         closed, crank_deg, offset, design, require, solve, name, source, unit: as for :func:`path`.
 
@@ -125,7 +127,7 @@ def motion(
     """
     task: dict[str, Any] = {
         "angle_weight": angle_weight, "tolerance": tolerance, "tolerance_deg": tolerance_deg,
-        "exact": exact, "closed": closed,
+        "weight": weight, "exact": exact, "closed": closed,
     }  # fmt: skip
     file = _file(poses)
     task["poses" if file is None else "file"] = file or poses

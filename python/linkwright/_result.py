@@ -23,7 +23,8 @@ class Candidate:
     """A linkage that a run found, with its figures. Every figure is the referee's, as in ``record.json``.
 
     Any key of a candidate in the record is an attribute: ``error``, ``type``, ``transmission_deg``, ``accepted``,
-    ``warnings``, ``requirements``, ``crank_deg``, ``t1_at``, ``link_ratio``, ``grashof_margin``, ``defects``, ..
+    ``warnings``, ``requirements``, ``crank_deg``, ``t1_at``, ``link_ratio``, ``grashof_margin``, ``defects``, ..; of a
+    motion ``frame_deg`` too, the angle from C -> D to the body's x axis.
     """
 
     __slots__ = ("data", "result", "which")

@@ -10,7 +10,7 @@ use crate::{pools, values};
 use linkwright::internals::app::comparison::{self, NotCompared, Target};
 use linkwright::internals::app::inputs::{self, Given};
 use linkwright::internals::app::snapping::{Subject as Snapping, fixed, pitches as read_pitches};
-use linkwright::internals::app::suite::choice::chosen;
+use linkwright::internals::app::suite::choice::{chosen, collection};
 use linkwright::internals::app::suite::{Options as SuiteOptions, Step, suite as run_suite};
 use linkwright::internals::files::linkage_file::{self, AnyLinkageFile, LinkageFile};
 use linkwright::internals::files::name;
@@ -369,8 +369,11 @@ pub fn suite<'py>(
         let Ended { value, interrupt } = run(py, 1, progress, move |talk| {
             let certify = certify.then(CertifySpec::default);
             let filter = if filter.is_empty() { String::new() } else { format!("{filter:?}, ") };
-            let command = format!("linkwright.suite({filter}seeds={seeds})");
-            let options = SuiteOptions { seeds, command, certify, ..SuiteOptions::default() };
+            let folder =
+                problems.as_ref().map(|folder| format!(", problems={:?}", folder.display().to_string()));
+            let command = format!("linkwright.suite({filter}seeds={seeds}{})", folder.unwrap_or_default());
+            let collection = problems.as_deref().and_then(collection);
+            let options = SuiteOptions { seeds, command, collection, certify, ..SuiteOptions::default() };
             let observer = |step: &Step<'_>| {
                 talk.tell(|| {
                     json!({ "phase": step.problem, "method": step.method.name(), "seed": step.seed,

@@ -131,6 +131,12 @@ impl Problem {
         self.file.expect.as_ref()?.best_known_sum_sq
     }
 
+    /// The least objective known, of a motion that states it.
+    #[getter]
+    fn best_known_objective(&self) -> Option<f64> {
+        self.file.expect.as_ref()?.objective
+    }
+
     /// Warnings about values that are ignored or cannot succeed.
     #[getter]
     fn warnings(&self) -> Vec<String> {

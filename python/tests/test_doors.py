@@ -229,6 +229,18 @@ def test_the_suite_runs() -> None:
     assert found.markdown.startswith("#")
 
 
+def test_the_suite_takes_motions(root: Path) -> None:
+    found = lw.suite("lwg-36", seeds=1, problems=root / "problems" / "motion")
+    (problem,) = found.data["problems"]
+    assert problem["best_known_objective"] == lw.load_problem(root / "problems/motion/lwg-36.toml").best_known_objective
+    assert problem["search"]["summary"]["hits"] == 1
+    assert problem["populations"] == []
+    assert found.data["collection"] == "motion"
+    assert "problems=" in found.data["command"]
+    assert "104.25085" in found.text
+    assert found.markdown.startswith("# Problems in motion")
+
+
 def test_exact_linkages_come_by_method(root: Path) -> None:
     files = [f for f in sorted((root / "problems").rglob("*.toml")) if 'method = "continuation"' in f.read_text()]
     assert files

@@ -1,13 +1,26 @@
 //! Statistics of many runs: medians, hits, the best run.
 //!
-//! Sums of squares are compared with a tolerance of [`WITHIN`], and below the problem's exactness floor every sum
-//! counts as zero: there, only rounding is left.
+//! Answers of a path are compared by their sum of squares, those of a motion by their objective ([`MotionErrors`]), with
+//! a tolerance of [`WITHIN`]. Below the problem's exactness floor every figure counts as zero: there, only rounding is
+//! left.
 
 use super::Reason;
 use serde::Serialize;
 
-/// The relative tolerance within which a sum of squares reaches another: published optima have seven digits and more.
+/// The relative tolerance within which a figure reaches another: published optima have seven digits and more.
 pub const WITHIN: f64 = 1e-6;
+
+/// The errors of an answer of a motion, beside the sum of squared distances of its places.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MotionErrors {
+    /// The figure that answers of a motion are compared by: sum_j w_j (|T_j - P_j|^2 + (W dtheta_j)^2) with the weights
+    /// w_j of the poses, the angle's weight W (a length) and the angle errors dtheta_j in radians.
+    pub objective: f64,
+    /// The root of the mean squared distance of the places.
+    pub rms: f64,
+    /// The root of the mean squared error of the body's angle, over the poses that give one, degrees.
+    pub rms_deg: f64,
+}
 
 /// The results of one run: one problem, one method, one seed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -20,6 +33,9 @@ pub struct Run {
     pub sum_sq: Option<f64>,
     /// The sum of squared distances of the points to that candidate's whole curve.
     pub to_curve_sum_sq: Option<f64>,
+    /// In a motion: the other errors of that candidate.
+    #[serde(flatten)]
+    pub motion: Option<MotionErrors>,
     /// The number of evaluations of the objective.
     pub evaluations: u64,
     /// The time from the checked problem to the ranked candidates with their figures, in seconds.
@@ -28,46 +44,57 @@ pub struct Run {
     pub reason: Reason,
 }
 
-/// The sums of squares with which the runs of a problem are compared.
+impl Run {
+    /// Returns the figure that answers are compared by: a motion's objective, a path's sum of squares; `None` without a
+    /// candidate.
+    pub fn figure(&self) -> Option<f64> {
+        self.motion.map(|motion| motion.objective).or(self.sum_sq)
+    }
+}
+
+/// The figures with which the runs of a problem are compared: sums of squares of a path, objectives of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
-    /// The sum of squares that counts as a hit.
+    /// The figure that counts as a hit.
     pub goal: f64,
-    /// The least sum of squares that is known.
+    /// The least figure that is known.
     pub best_known: f64,
-    /// The sum of squares below which a fit is exact.
+    /// The figure below which a fit is exact.
     pub exact: f64,
 }
 
 impl Bar {
-    /// Returns whether sum_sq <= goal (1 + [`WITHIN`]) + exact.
-    pub fn is_reached_by(&self, sum_sq: f64) -> bool {
-        sum_sq <= self.goal * (1.0 + WITHIN) + self.exact
+    /// Returns whether figure <= goal (1 + [`WITHIN`]) + exact.
+    pub fn is_reached_by(&self, figure: f64) -> bool {
+        figure <= self.goal * (1.0 + WITHIN) + self.exact
     }
 
-    /// Returns whether sum_sq <= best known (1 + [`WITHIN`]) + exact.
-    pub fn best_known_is_reached_by(&self, sum_sq: f64) -> bool {
-        sum_sq <= self.best_known * (1.0 + WITHIN) + self.exact
+    /// Returns whether figure <= best known (1 + [`WITHIN`]) + exact.
+    pub fn best_known_is_reached_by(&self, figure: f64) -> bool {
+        figure <= self.best_known * (1.0 + WITHIN) + self.exact
     }
 
-    /// Returns whether sum_sq < best known (1 - [`WITHIN`]) - exact: smaller than anything known, and not by rounding.
-    pub fn is_beaten_by(&self, sum_sq: f64) -> bool {
-        sum_sq < self.best_known * (1.0 - WITHIN) - self.exact
+    /// Returns whether figure < best known (1 - [`WITHIN`]) - exact: smaller than anything known, and not by rounding.
+    pub fn is_beaten_by(&self, figure: f64) -> bool {
+        figure < self.best_known * (1.0 - WITHIN) - self.exact
     }
 }
 
-/// The summary of the runs of one method on one problem. Sums are of accepted candidates only.
+/// The summary of the runs of one method on one problem. Sums and objectives are of accepted candidates only.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// The number of runs whose first candidate is accepted.
     pub accepted: usize,
-    /// The accepted run with the least sum of squares, the first of equal ones.
+    /// The accepted run with the least sum of squares, or in a motion the least objective; the first of equal ones.
     pub best: Option<Best>,
     /// The median sum of squares of the accepted runs.
     pub median_sum_sq: Option<f64>,
+    /// In a motion: the median objective of the accepted runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub median_objective: Option<f64>,
     /// The number of accepted runs that reach the goal.
     pub hits: usize,
-    /// The number of accepted runs that reach the best known sum.
+    /// The number of accepted runs that reach the best known sum, or in a motion the best known objective.
     pub hits_of_best_known: usize,
     /// The median time of a search over all runs, in seconds.
     pub median_search_s: Option<f64>,
@@ -86,6 +113,16 @@ pub struct Best {
     pub sum_sq: f64,
     /// The sum of squared distances of the points to the whole curve.
     pub to_curve_sum_sq: Option<f64>,
+    /// In a motion: its other errors.
+    #[serde(flatten)]
+    pub motion: Option<MotionErrors>,
+}
+
+impl Best {
+    /// Returns the figure that answers are compared by: a motion's objective, a path's sum of squares.
+    pub fn figure(&self) -> f64 {
+        self.motion.map_or(self.sum_sq, |motion| motion.objective)
+    }
 }
 
 impl Summary {
@@ -95,15 +132,18 @@ impl Summary {
         let sums: Vec<f64> = accepted().filter_map(|run| run.sum_sq).collect();
         let times: Vec<f64> = runs.iter().map(|run| run.search_s).collect();
         let evaluations: Vec<u64> = runs.iter().map(|run| run.evaluations).collect();
-        let reached = |by: fn(&Bar, f64) -> bool| sums.iter().filter(|sum| by(bar, **sum)).count();
+        let objectives: Vec<f64> = accepted().filter_map(|run| Some(run.motion?.objective)).collect();
+        let figures: Vec<f64> = accepted().filter_map(Run::figure).collect();
+        let reached = |by: fn(&Bar, f64) -> bool| figures.iter().filter(|figure| by(bar, **figure)).count();
         let of = |run: &Run| {
-            let best = Best { seed: run.seed, sum_sq: run.sum_sq?, to_curve_sum_sq: run.to_curve_sum_sq };
-            Some(best)
+            let Run { seed, sum_sq, to_curve_sum_sq, motion, .. } = *run;
+            Some(Best { seed, sum_sq: sum_sq?, to_curve_sum_sq, motion })
         };
         Summary {
             accepted: accepted().count(),
-            best: accepted().filter_map(of).min_by(|one, other| one.sum_sq.total_cmp(&other.sum_sq)),
+            best: accepted().filter_map(of).min_by(|one, other| one.figure().total_cmp(&other.figure())),
             median_sum_sq: median(&sums),
+            median_objective: median(&objectives),
             hits: reached(Bar::is_reached_by),
             hits_of_best_known: reached(Bar::best_known_is_reached_by),
             median_search_s: median(&times),
@@ -155,6 +195,7 @@ mod tests {
             accepted,
             sum_sq: Some(sum_sq),
             to_curve_sum_sq: Some(0.5 * sum_sq),
+            motion: None,
             evaluations: 100 * seed,
             search_s: 0.25 * seed as f64,
             reason: Reason::Converged,
@@ -182,6 +223,31 @@ mod tests {
         assert_eq!(summary.median_sum_sq, Some(2.25));
         assert_eq!((summary.median_search_s, summary.worst_search_s), (Some(0.875), Some(1.5)));
         assert_eq!(summary.median_evaluations, Some(350));
+    }
+
+    #[test]
+    fn runs_of_a_motion_are_compared_by_their_objective() {
+        let of = |seed: u64, sum_sq: f64, objective: f64| Run {
+            motion: Some(MotionErrors { objective, rms: 0.5, rms_deg: 0.25 }),
+            ..run(seed, true, sum_sq)
+        };
+        let summary = Summary::of(&[of(1, 0.1, 4.0), of(2, 0.3, 2.0), of(3, 0.2, 3.0)], &BAR);
+        let best = summary.best.expect("all are accepted");
+        assert_eq!((best.seed, best.figure(), best.sum_sq), (2, 2.0, 0.3), "not the least sum");
+        assert_eq!((summary.median_sum_sq, summary.median_objective), (Some(0.2), Some(3.0)));
+        assert_eq!((summary.hits, summary.hits_of_best_known), (2, 1));
+    }
+
+    #[test]
+    fn the_errors_of_a_motion_stand_among_the_keys_of_a_run_and_a_path_has_none_of_them() {
+        let keys = |run: &Run| {
+            let value = serde_json::to_value(run).expect("JSON");
+            let keys = value.as_object().expect("a table").keys().cloned();
+            keys.filter(|key| ["objective", "rms", "rms_deg", "motion"].contains(&key.as_str())).count()
+        };
+        let path = run(1, true, 2.0);
+        let motion = Some(MotionErrors { objective: 4.0, rms: 0.5, rms_deg: 0.25 });
+        assert_eq!((keys(&path), keys(&Run { motion, ..path })), (0, 3));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The figures of a suite: problems with a known answer, many seeds each.
 
-pub use super::statistics::{Run, Summary};
+pub use super::statistics::{MotionErrors, Run, Summary};
 use super::{Certificate, Tool};
 use crate::task::spec::Method;
 use serde::Serialize;
@@ -17,6 +17,9 @@ pub struct Suite {
     pub tool: Tool,
     /// The command that makes it again.
     pub command: String,
+    /// The name of the folder of the problems, where they are not those of the literature.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub collection: Option<String>,
     /// The number of seeds that was asked for: seeds 1 to this.
     pub seeds: u64,
     /// The number of threads of every search: 1.
@@ -25,6 +28,56 @@ pub struct Suite {
     pub complete: bool,
     /// The problems in the given order; after a cancellation, those that were begun.
     pub problems: Vec<ProblemResult>,
+    /// The problems that were not run.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A problem that is not run, because nothing is known that its answers could be compared with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// The name of the problem.
+    pub name: String,
+    /// The reason.
+    pub why: String,
+}
+
+/// The figure that the answers of a problem are compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Known {
+    /// Of a path: sums of squared distances.
+    Path {
+        /// The least sum of squares that is known.
+        best_known_sum_sq: f64,
+        /// The sum of squares that a run has to reach to count as a hit.
+        goal_sum_sq: f64,
+    },
+    /// Of a motion: the objective, [`MotionErrors::objective`]. A run has to reach it to count as a hit.
+    Motion {
+        /// The least objective that is known.
+        best_known_objective: f64,
+        /// A length: an angle error of one radian counts like an error of the place of this length.
+        angle_weight: f64,
+    },
+}
+
+impl Known {
+    /// Returns the least figure that is known.
+    pub fn best(&self) -> f64 {
+        match *self {
+            Known::Path { best_known_sum_sq, .. } => best_known_sum_sq,
+            Known::Motion { best_known_objective, .. } => best_known_objective,
+        }
+    }
+
+    /// Returns the figure that a run has to reach to count as a hit.
+    pub fn goal(&self) -> f64 {
+        match *self {
+            Known::Path { goal_sum_sq, .. } => goal_sum_sq,
+            Known::Motion { best_known_objective, .. } => best_known_objective,
+        }
+    }
 }
 
 /// The results for one problem of a suite.
@@ -34,16 +87,18 @@ pub struct ProblemResult {
     pub name: String,
     /// The source of the problem.
     pub source: Option<String>,
-    /// The number of target points.
+    /// The number of target points; of a motion, the number of poses and places.
     pub points: usize,
-    /// The least sum of squares that is known.
-    pub best_known_sum_sq: f64,
-    /// The sum of squares that a run has to reach to count as a hit.
-    pub goal_sum_sq: f64,
+    /// What its answers are compared with.
+    #[serde(flatten)]
+    pub known: Known,
     /// The results of the method that the file asks for, from every seed.
     pub search: MethodResult,
     /// The results of the population searches with the median number of evaluations of `search`.
     pub populations: Vec<MethodResult>,
+    /// The reason why there are no population searches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub no_populations: Option<String>,
     /// The smallest accepted answer of all runs, if it is smaller than the best known by more than one part in a
     /// million.
     pub smaller_than_best_known: Option<Smaller>,
@@ -52,7 +107,7 @@ pub struct ProblemResult {
     /// The one of `published` with the least sum by our evaluation; if none can be evaluated, the one with the least
     /// printed sum.
     pub best_published: Option<PublishedResult>,
-    /// The certificate of the least accepted sum of `search`, if certificates are asked for and there is one.
+    /// The certificate of the best accepted answer of `search`, if certificates are asked for and there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
     /// The reason why there is no certificate, if certificates are asked for.
@@ -82,6 +137,16 @@ pub struct Smaller {
     pub seed: u64,
     /// Its sum of squares.
     pub sum_sq: f64,
+    /// In a motion: its objective.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub objective: Option<f64>,
+}
+
+impl Smaller {
+    /// Returns the figure that answers are compared by: a motion's objective, a path's sum of squares.
+    pub fn figure(&self) -> f64 {
+        self.objective.unwrap_or(self.sum_sq)
+    }
 }
 
 /// A published answer, evaluated again.
@@ -100,6 +165,13 @@ pub struct PublishedResult {
     pub accepted: Option<bool>,
     /// The requirements that it does not meet.
     pub unmet: Vec<String>,
+}
+
+impl ProblemResult {
+    /// Returns whether the problem is a motion: poses of a body.
+    pub fn is_motion(&self) -> bool {
+        matches!(self.known, Known::Motion { .. })
+    }
 }
 
 impl Suite {

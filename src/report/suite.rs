@@ -1,16 +1,21 @@
 //! A suite for the terminal and as Markdown: the same tables in two formats.
+//!
+//! Paths, whose answers are compared by a sum of squares, and motions, whose objective counts angles too, have tables of
+//! their own.
 
 use super::grid::Align::{Left, Right};
 use super::grid::{Cell, Colour, Column, Grid, Ink, plain};
 use super::text::{
     COLUMNS, NO_NUMBER, brief, clean, clean_sentence, grouped, markdown, percent_up, significant, wrapped,
 };
-use crate::record::suite::{MethodResult, ProblemResult, PublishedResult, Suite};
+use crate::record::suite::{MethodResult, MotionErrors, ProblemResult, PublishedResult, Suite};
 
 /// The mark of a problem with a sum that is smaller than the best known.
 const SMALLER: &str = " *";
 /// The number of digits of figures that are stated one by one.
 const DIGITS: usize = 10;
+/// The number of digits of a motion's objectives in a table.
+const DIGITS_OF_OBJECTIVES: usize = 8;
 /// The width of a problem's name on a terminal, in columns.
 const NAME: usize = 30;
 
@@ -22,6 +27,13 @@ const TIMES: &str = "ms: the median and the worst time of a search, of one threa
     to ranked, refereed candidates; times depend on the machine, the other figures do not.";
 const PROVED: &str = "proved gap: no linkage of the kind that is told below has a sum of squares more than this below the \
     least one found.";
+const MOTIONS: &str = "Motions: poses of a body";
+const WHAT_OF_MOTIONS: &str = "objective: the least one of all seeds, the sum over the poses of weight times (squared \
+    distance of the place + (angle_weight times the error of the angle in radians) squared); median: of the accepted \
+    answers of all seeds; hits: seeds whose answer is accepted and reaches the best known objective within 1e-6 of it \
+    (where that is 0: up to rounding); rms, rms deg: the root of the mean squared distance of the places and error of \
+    the angle, in degrees, of the best answer; poses: how many, with those that are a place alone; evaluations: of the \
+    objective, median.";
 const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as printed (where that could be \
     read in the source) and by our referee; genetic, diff. evolution: their median sum over accepted answers, \
     after as many evaluations as the search above used in the median, and how many seeds had one.";
@@ -30,15 +42,29 @@ const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as 
 pub fn suite_text(suite: &Suite, colour: Colour) -> String {
     let said = |text: &str| wrapped("  ", "    ", text, COLUMNS);
     let mut out = String::new();
-    if !suite.problems.is_empty() {
-        out.push_str(&answers(suite).shortened(NAME).render(colour));
+    let (paths, motions) = by_kind(suite);
+    if !paths.is_empty() {
+        out.push_str(&answers(&paths).shortened(NAME).render(colour));
         out.push('\n');
-        out.push_str(&beside(suite).shortened(NAME).render(colour));
+        out.push_str(&beside(&paths).shortened(NAME).render(colour));
         out.push('\n');
         out.extend([WHAT, TIMES, BESIDE].map(said));
-        out.extend(is_certified(suite).then(|| said(PROVED)));
-        out.extend(proofs(suite).iter().map(|proof| said(proof)));
+        out.extend(is_certified(&paths).then(|| said(PROVED)));
     }
+    if !motions.is_empty() {
+        if !paths.is_empty() {
+            out.push('\n');
+        }
+        out.push_str(&format!("  {}\n\n", colour.paint(Ink::Strong, MOTIONS)));
+        for table in [answers_of_motions(&motions), effort(&motions)] {
+            out.push_str(&table.shortened(NAME).render(colour));
+            out.push('\n');
+        }
+        out.push_str(&said(WHAT_OF_MOTIONS));
+        out.extend(paths.is_empty().then(|| said(TIMES)));
+        out.extend(without_populations(&motions).map(|why| said(&why)));
+    }
+    out.extend(proofs(suite).iter().map(|proof| said(proof)));
     let notes = notes(suite);
     if !notes.is_empty() {
         out.push('\n');
@@ -50,7 +76,12 @@ pub fn suite_text(suite: &Suite, colour: Colour) -> String {
 /// Returns a suite as a Markdown page, with the command that makes it again and every published figure with its source.
 pub fn suite_markdown(suite: &Suite) -> String {
     let paragraph = |text: &str| wrapped("", "", text, COLUMNS + 10) + "\n";
-    let mut out = String::from("# Problems of the literature: what is found\n\n");
+    let (paths, motions) = by_kind(suite);
+    let whose = match &suite.collection {
+        None => "of the literature".to_owned(),
+        Some(folder) => format!("in {}", markdown(&clean(folder))),
+    };
+    let mut out = format!("# Problems {whose}: what is found\n\n");
     out.push_str(&paragraph(&format!(
         "Written by linkwright {}; to make this page and its JSON again:",
         clean(&suite.tool.version)
@@ -62,21 +93,35 @@ pub fn suite_markdown(suite: &Suite) -> String {
          of whatever machine this ran on.",
         suite.seeds
     )));
-    out.push_str("## The answers\n\n");
-    out.push_str(&answers(suite).markdown());
-    out.push('\n');
-    out.push_str(&paragraph(WHAT));
-    out.push_str(&paragraph(TIMES));
-    if is_certified(suite) {
-        out.push_str(&paragraph(PROVED));
-        out.push_str(&bullets(&proofs(suite)));
+    let has_paths = !paths.is_empty() || motions.is_empty();
+    if has_paths {
+        out.push_str("## The answers\n\n");
+        out.push_str(&answers(&paths).markdown());
+        out.push('\n');
+        out.push_str(&paragraph(WHAT));
     }
-    let notes: Vec<String> = notes(suite).iter().map(|note| clean(note)).collect();
-    out.push_str(&bullets(&notes));
-    out.push_str("## Beside them\n\n");
-    out.push_str(&beside(suite).markdown());
-    out.push('\n');
-    out.push_str(&paragraph(BESIDE));
+    if !motions.is_empty() {
+        out.push_str(&format!("## {MOTIONS}\n\n"));
+        for table in [answers_of_motions(&motions), effort(&motions)] {
+            out.push_str(&table.markdown());
+            out.push('\n');
+        }
+        out.push_str(&paragraph(WHAT_OF_MOTIONS));
+        out.extend(without_populations(&motions).map(|why| paragraph(&why)));
+    }
+    out.push_str(&paragraph(TIMES));
+    out.extend(is_certified(&paths).then(|| paragraph(PROVED)));
+    out.push_str(&bullets(&proofs(suite)));
+    out.push_str(&bullets(&notes(suite)));
+    if has_paths {
+        out.push_str("## Beside them\n\n");
+        out.push_str(&beside(&paths).markdown());
+        out.push('\n');
+        out.push_str(&paragraph(BESIDE));
+    }
+    if !has_paths && suite.problems.iter().all(|problem| problem.published.is_empty()) {
+        return out.trim_end().to_owned() + "\n";
+    }
     out.push_str("## What was published\n\n");
     out.push_str(&paragraph(
         "Each vector as it is stored in the problem file, evaluated by our referee under the problem's timing. A \
@@ -92,12 +137,23 @@ fn bullets(texts: &[String]) -> String {
     texts.iter().map(|text| wrapped("- ", "  ", &markdown(text), COLUMNS + 10)).collect::<String>() + end
 }
 
-/// Returns whether certificates were asked for.
-fn is_certified(suite: &Suite) -> bool {
-    suite.problems.iter().any(|p| p.certificate.is_some() || p.no_certificate.is_some())
+/// Returns the paths and the motions of a suite.
+fn by_kind(suite: &Suite) -> (Vec<&ProblemResult>, Vec<&ProblemResult>) {
+    suite.problems.iter().partition(|problem| !problem.is_motion())
 }
 
-/// Returns a sentence for each certificate, and for each one that is not possible.
+/// Returns whether certificates were asked for.
+fn is_certified(problems: &[&ProblemResult]) -> bool {
+    problems.iter().any(|p| p.certificate.is_some() || p.no_certificate.is_some())
+}
+
+/// Returns the sentence that says why no population search is shown beside these problems.
+fn without_populations(problems: &[&ProblemResult]) -> Option<String> {
+    let why = problems.iter().find_map(|problem| problem.no_populations.as_ref())?;
+    Some(format!("No genetic algorithm and no differential evolution beside them: {}.", clean_sentence(why)))
+}
+
+/// Returns a sentence for each certificate, and for each one that is not possible; motions with one reason together.
 fn proofs(suite: &Suite) -> Vec<String> {
     let told = |problem: &ProblemResult| {
         let name = clean(&problem.name);
@@ -112,40 +168,102 @@ fn proofs(suite: &Suite) -> Vec<String> {
             (None, None) => None,
         }
     };
-    suite.problems.iter().filter_map(told).collect()
+    let (paths, motions) = by_kind(suite);
+    let mut sentences: Vec<String> = paths.into_iter().filter_map(told).collect();
+    let why = |problem: &&ProblemResult| Some((problem.name.clone(), problem.no_certificate.clone()?));
+    sentences.extend(by_reason(motions.iter().filter_map(why)));
+    sentences
 }
 
-fn answers(suite: &Suite) -> Grid {
-    let marked = |p: &ProblemResult| match p.smaller_than_best_known {
-        Some(_) => (format!("{}{SMALLER}", clean(&p.name)), Ink::Good),
-        None => plain(clean(&p.name)),
-    };
+/// Returns a sentence for each reason, after the names of the problems that have it.
+fn by_reason(problems: impl IntoIterator<Item = (String, String)>) -> Vec<String> {
+    let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
+    for (name, why) in problems {
+        match reasons.iter_mut().find(|(reason, _)| *reason == why) {
+            Some((_, names)) => names.push(clean(&name)),
+            None => reasons.push((why, vec![clean(&name)])),
+        }
+    }
+    reasons.iter().map(|(why, names)| format!("{}: {}.", names.join(", "), clean_sentence(why))).collect()
+}
+
+/// Returns the cell of a problem's name, with the mark of one whose best known answer is beaten.
+fn marked(problem: &ProblemResult) -> Cell {
+    match problem.smaller_than_best_known {
+        Some(_) => (format!("{}{SMALLER}", clean(&problem.name)), Ink::Good),
+        None => plain(clean(&problem.name)),
+    }
+}
+
+fn hits(problem: &ProblemResult) -> Cell {
+    plain(format!("{}/{}", problem.search.summary.hits, problem.search.runs.len()))
+}
+
+/// Returns the cell of a time, in milliseconds.
+fn milliseconds(seconds: Option<f64>) -> Cell {
+    number(seconds.map(|s| 1e3 * s), 3)
+}
+
+fn evaluations(problem: &ProblemResult) -> Cell {
+    plain(problem.search.summary.median_evaluations.map_or(NO_NUMBER.into(), grouped))
+}
+
+fn answers(problems: &[&ProblemResult]) -> Grid {
     let to_curve = |p: &ProblemResult| p.search.summary.best.as_ref().and_then(|best| best.to_curve_sum_sq);
-    let evaluations =
-        |p: &ProblemResult| p.search.summary.median_evaluations.map_or(NO_NUMBER.into(), grouped);
     let gap = |p: &ProblemResult| {
         let proof = p.certificate.as_ref().filter(|proof| proof.lower_bound > 0.0);
         proof.map_or(NO_NUMBER.into(), |proof| format!("{} %", percent_up(proof.gap)))
     };
-    let columns: [Column<'_, ProblemResult>; 10] = [
-        (Left, "problem", &marked),
+    let columns: [Column<'_, &ProblemResult>; 10] = [
+        (Left, "problem", &|p| marked(p)),
         (Right, "sum of sq", &|p| number(p.search.summary.best.as_ref().map(|best| best.sum_sq), 6)),
-        (Right, "best known", &|p| number(Some(p.best_known_sum_sq), 6)),
+        (Right, "best known", &|p| number(Some(p.known.best()), 6)),
         (Right, "median", &|p| number(p.search.summary.median_sum_sq, 6)),
         (Right, "to curve", &|p| number(to_curve(p), 4)),
-        (Right, "hits", &|p| plain(format!("{}/{}", p.search.summary.hits, p.search.runs.len()))),
-        (Right, "median ms", &|p| number(p.search.summary.median_search_s.map(|s| 1e3 * s), 3)),
-        (Right, "worst ms", &|p| number(p.search.summary.worst_search_s.map(|s| 1e3 * s), 3)),
-        (Right, "evaluations", &|p| plain(evaluations(p))),
+        (Right, "hits", &|p| hits(p)),
+        (Right, "median ms", &|p| milliseconds(p.search.summary.median_search_s)),
+        (Right, "worst ms", &|p| milliseconds(p.search.summary.worst_search_s)),
+        (Right, "evaluations", &|p| evaluations(p)),
         (Right, "proved gap", &|p| plain(gap(p))),
     ];
-    Grid::of(&suite.problems, if is_certified(suite) { &columns } else { &columns[..9] })
+    Grid::of(problems, if is_certified(problems) { &columns } else { &columns[..9] })
 }
 
-fn beside(suite: &Suite) -> Grid {
+fn answers_of_motions(problems: &[&ProblemResult]) -> Grid {
+    let best = |p: &ProblemResult, of: fn(&MotionErrors) -> f64| {
+        p.search.summary.best.as_ref().and_then(|best| best.motion.as_ref()).map(of)
+    };
+    // Beside an exact answer there is rounding alone.
+    let digits = |p: &ProblemResult| if p.known.best() > 0.0 { DIGITS_OF_OBJECTIVES } else { 3 };
+    let objective = |p: &ProblemResult, value: Option<f64>| number(value, digits(p));
+    let columns: [Column<'_, &ProblemResult>; 7] = [
+        (Left, "problem", &|p| marked(p)),
+        (Right, "objective", &|p| objective(p, best(p, |errors| errors.objective))),
+        (Right, "best known", &|p| objective(p, Some(p.known.best()))),
+        (Right, "median", &|p| objective(p, p.search.summary.median_objective)),
+        (Right, "hits", &|p| hits(p)),
+        (Right, "rms", &|p| number(best(p, |errors| errors.rms), 4)),
+        (Right, "rms deg", &|p| number(best(p, |errors| errors.rms_deg), 4)),
+    ];
+    Grid::of(problems, &columns)
+}
+
+/// Returns the table of the times and evaluations of the searches for motions.
+fn effort(problems: &[&ProblemResult]) -> Grid {
+    let columns: [Column<'_, &ProblemResult>; 5] = [
+        (Left, "problem", &|p| plain(clean(&p.name))),
+        (Right, "poses", &|p| plain(p.points.to_string())),
+        (Right, "median ms", &|p| milliseconds(p.search.summary.median_search_s)),
+        (Right, "worst ms", &|p| milliseconds(p.search.summary.worst_search_s)),
+        (Right, "evaluations", &|p| evaluations(p)),
+    ];
+    Grid::of(problems, &columns)
+}
+
+fn beside(problems: &[&ProblemResult]) -> Grid {
     let heads = ["median", "printed", "re-evaluated", "genetic", "accepted", "diff. evolution", "accepted"];
     let mut grid = Grid::new(&[(Left, &["problem"]), (Right, &heads)]);
-    for problem in &suite.problems {
+    for problem in problems {
         let best = problem.best_published.as_ref();
         let mut cells = vec![
             plain(clean(&problem.name)),
@@ -187,17 +305,17 @@ fn published(suite: &Suite) -> Grid {
 }
 
 /// Returns the notes that a reader must not miss: a goal that is not the best known sum, a sum smaller than the best
-/// known, seeds without an answer, an interruption.
+/// known, seeds without an answer, problems that are left out, an interruption.
 fn notes(suite: &Suite) -> Vec<String> {
     let mut notes = Vec::new();
     for problem in &suite.problems {
         let (name, of) = (clean(&problem.name), problem.search.runs.len());
-        let known = brief(problem.best_known_sum_sq, DIGITS);
+        let known = brief(problem.known.best(), DIGITS);
         let summary = &problem.search.summary;
-        if problem.goal_sum_sq != problem.best_known_sum_sq {
+        if problem.known.goal() != problem.known.best() {
             notes.push(format!(
                 "{name}: hits are of its goal, {}; the best known, {known}, was reached from {} of {of} seeds.",
-                brief(problem.goal_sum_sq, DIGITS),
+                brief(problem.known.goal(), DIGITS),
                 summary.hits_of_best_known,
             ));
         }
@@ -205,7 +323,7 @@ fn notes(suite: &Suite) -> Vec<String> {
             notes.push(format!(
                 "{name}{SMALLER}: smaller than the best known! {} by {} from seed {}, accepted by the referee; \
                  {known} was the best known.",
-                brief(smaller.sum_sq, DIGITS),
+                brief(smaller.figure(), DIGITS),
                 smaller.method.name(),
                 smaller.seed,
             ));
@@ -214,6 +332,8 @@ fn notes(suite: &Suite) -> Vec<String> {
             notes.push(format!("{name}: an accepted answer from {} of {of} seeds only.", summary.accepted));
         }
     }
+    let left_out = suite.left_out.iter().map(|one| (one.name.clone(), one.why.clone()));
+    notes.extend(by_reason(left_out).iter().map(|sentence| format!("Left out: {sentence}")));
     if !suite.complete {
         let whole = |m: &MethodResult| m.runs.len() as u64 == suite.seeds;
         let done = suite.problems.iter().filter(|p| whole(&p.search)).count();

@@ -1,6 +1,6 @@
 //! The suite: published vectors by our referee, figures of many seeds, the command, what it writes.
 
-use crate::common::{job, literature, parse, root};
+use crate::common::{job, literature, load, parse, root};
 use assert_cmd::Command;
 use linkwright::internals::app::job::run::{Context, run};
 use linkwright::internals::app::suite::published;
@@ -8,12 +8,13 @@ use linkwright::internals::app::suite::{Options, Step, suite};
 use linkwright::internals::files::problem_file::{ProblemFile, Published};
 use linkwright::internals::mechanism::AssemblyMode;
 use linkwright::internals::record;
-use linkwright::internals::record::suite::Suite;
+use linkwright::internals::record::suite::{Known, Suite};
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::suite::{suite_markdown, suite_text};
 use linkwright::internals::task::Problem;
 use linkwright::internals::task::spec::{CertifySpec, Method};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
@@ -224,6 +225,123 @@ fn a_cancelled_suite_counts_no_run_that_was_cut_short() {
     assert!(suite_text(&cut, Colour::Never).contains("Interrupted: all 10 seeds of 0 problems"));
 }
 
+/// A problem of `problems/motion`.
+fn motion(name: &str) -> ProblemFile {
+    load(&root().join(format!("problems/motion/{name}.toml")), &[])
+}
+
+#[test]
+fn answers_of_a_motion_are_compared_by_their_objective_and_no_population_is_beside_them() {
+    let figures = figures(&[motion("lwg-36"), motion("hsieh-20"), motion("bulldozer-blade")], 2);
+    assert!(figures.complete && figures.is_accepted());
+    let [lwg, hsieh] = figures.problems.as_slice() else { panic!("two of three have something to compare") };
+    assert!(matches!(lwg.known, Known::Motion { best_known_objective, .. } if best_known_objective > 104.25));
+    for problem in [lwg, hsieh] {
+        let summary = &problem.search.summary;
+        assert_eq!((summary.hits, summary.hits_of_best_known), (2, 2), "{}", problem.name);
+        assert_eq!(problem.smaller_than_best_known, None);
+        assert!(problem.populations.is_empty() && problem.no_populations.is_some());
+    }
+    let best = lwg.search.summary.best.as_ref().expect("an answer");
+    let errors = best.motion.expect("a motion");
+    assert!((best.figure() - 104.250_851_098_746).abs() < 1e-9);
+    // The objective from the figures of the record alone: all poses have an angle and the weight 1.
+    let Known::Motion { angle_weight, .. } = lwg.known else { panic!("a motion") };
+    let of_angles = (angle_weight * errors.rms_deg.to_radians()).powi(2) * lwg.points as f64;
+    assert!((best.sum_sq + of_angles - errors.objective).abs() < 1e-9 * errors.objective);
+    assert!((errors.rms - (best.sum_sq / lwg.points as f64).sqrt()).abs() < 1e-12);
+    assert_eq!((figures.left_out.len(), figures.left_out[0].name.as_str()), (1, "bulldozer-blade"));
+
+    let (text, page) = (suite_text(&figures, Colour::Never), suite_markdown(&figures));
+    for said in [
+        "Motions: poses of a body",
+        "104.25085",
+        "rms deg",
+        "population searches do not take",
+        "Left out: bulldozer-blade: no objective under",
+    ] {
+        assert!(text.contains(said) && page.contains(said), "{said}\n{text}\n{page}");
+    }
+    assert!(page.trim_end().ends_with("to compare)."), "no sentence is cut: {page}");
+    for other in ["sum of sq", "to curve", "printed", "genetic |"] {
+        assert!(!text.contains(other) && !page.contains(other), "{other}\n{text}\n{page}");
+    }
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+}
+
+#[test]
+fn paths_and_motions_of_one_suite_have_tables_of_their_own() {
+    let figures = figures(&[literature("e5", &[]), motion("triple-rocker-8")], 1);
+    let (text, page) = (suite_text(&figures, Colour::Never), suite_markdown(&figures));
+    for table in [&text, &page] {
+        let place = |words: &str| table.find(words).unwrap_or_else(|| panic!("{words} in\n{table}"));
+        assert!(place("sum of sq") < place("Motions: poses of a body"), "{table}");
+        assert!(place("Motions: poses of a body") < place("rms deg"), "{table}");
+        assert_eq!(table.matches("ms: the median and the worst time").count(), 1, "{table}");
+    }
+    let shown = page.split("## Motions").next().expect("the first part");
+    assert!(shown.contains("| e5 |") && !shown.contains("triple-rocker-8"), "{page}");
+}
+
+#[test]
+fn an_objective_smaller_than_the_best_known_is_said() {
+    let mut file = motion("lwg-36");
+    file.expect.as_mut().expect("it expects something").objective = Some(200.0);
+    let beaten = figures(&[file], 1);
+    let smaller = beaten.problems[0].smaller_than_best_known.as_ref().expect("104.25 is smaller than 200");
+    assert!((smaller.figure() - 104.250_851_098_746).abs() < 1e-9 && smaller.sum_sq < 20.0);
+    let text = suite_text(&beaten, Colour::Never);
+    assert!(
+        text.contains("lwg-36 *: smaller than the best known! 104.2508511 by auto from seed 1"),
+        "{text}"
+    );
+}
+
+#[test]
+fn there_is_no_certificate_of_a_motion_and_the_suite_says_why() {
+    let options = Options { seeds: 1, certify: Some(CertifySpec::default()), ..Options::default() };
+    let files = [motion("lwg-36"), motion("kinzel-5")];
+    let figures = suite(&files, &options, &AtomicBool::new(false), &|_| {}).expect("it runs");
+    for problem in &figures.problems {
+        assert!(problem.certificate.is_none());
+        assert!(problem.no_certificate.as_ref().expect("a reason").contains("poses of a body"));
+    }
+    let text = suite_text(&figures, Colour::Never);
+    let said = "lwg-36, kinzel-5: no certificate is available for poses of a body: the proof covers";
+    assert!(text.contains(said), "{text}");
+    assert!(!text.contains("proved gap"), "{text}");
+}
+
+/// The paths of all keys of a JSON value, the entries of a list together.
+fn keys(value: &Value, place: &str, found: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(table) => {
+            for (key, value) in table {
+                let place = format!("{place}.{key}");
+                keys(value, &place, found);
+                found.insert(place);
+            }
+        }
+        Value::Array(list) => list.iter().for_each(|value| keys(value, place, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn the_json_of_paths_has_the_keys_that_it_has_in_the_repository_and_no_others() {
+    let all = |of: &Value| {
+        let mut found = BTreeSet::new();
+        keys(of, "", &mut found);
+        found
+    };
+    let text = fs::read_to_string(root().join("results/literature.json")).expect("there");
+    let mut kept: Value = serde_json::from_str(&text).expect("JSON");
+    let problems = kept["problems"].as_array_mut().expect("a list");
+    problems.retain(|problem| problem["name"] == "e5");
+    let made = serde_json::to_value(figures(&[literature("e5", &[])], 1)).expect("JSON");
+    assert_eq!(all(&made), all(&kept));
+}
+
 /// The command in a folder of its own.
 fn linkwright(folder: &Path) -> Command {
     let mut command = Command::cargo_bin("linkwright").expect("it is built");
@@ -297,7 +415,7 @@ fn what_cannot_be_run_is_said_with_exit_2() {
     fs::write(house.path().join("bare/plain.toml"), plain).expect("written");
     let (code, _, stderr) = answer(linkwright(house.path()).args(["suite", "--problems", "bare"]));
     assert_eq!(code, Some(2));
-    assert!(stderr.contains("best_known_sum_sq"), "{stderr}");
+    assert!(stderr.contains("best_known_sum_sq (of a path) or objective (of a motion)"), "{stderr}");
 }
 
 #[test]
@@ -394,4 +512,47 @@ fn ctrl_c_ends_the_suite_and_says_what_is_done() {
     assert_eq!(json["complete"], false);
     assert_eq!(json["problems"].as_array().map(Vec::len), Some(1));
     assert!(!house.path().join("results").exists(), "no folder is left behind");
+}
+
+#[test]
+fn the_page_of_another_folder_bears_its_name_and_names_what_is_left_out() {
+    let folder = TempDir::new().expect("a folder");
+    let place = folder.path().join("my-motions");
+    fs::create_dir(&place).expect("made");
+    for name in ["triple-rocker-8.toml", "folding-bed.toml"] {
+        fs::copy(root().join("problems/motion").join(name), place.join(name)).expect("copied");
+    }
+    let run = |words: &[&str]| {
+        let words = [&["suite", "--problems", "my-motions/", "--seeds", "1"], words].concat();
+        answer(linkwright(folder.path()).args(words))
+    };
+    let (code, stdout, stderr) = run(&["--write"]);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(stdout.contains("Written to results/my-motions.md and results/my-motions.json"), "{stdout}");
+    assert!(stdout.contains("Left out: folding-bed: no objective under [expect]"), "{stdout}");
+    let results = folder.path().join("results");
+    let page = fs::read_to_string(results.join("my-motions.md")).expect("written");
+    assert!(page.starts_with("# Problems in my-motions: what is found\n"), "{page}");
+    assert!(page.contains("suite --problems my-motions/ --seeds 1 --write"), "{page}");
+    let text = fs::read_to_string(results.join("my-motions.json")).expect("written");
+    let json: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(
+        (&json["collection"], &json["left_out"][0]["name"]),
+        (&"my-motions".into(), &"folding-bed".into())
+    );
+    let problem = &json["problems"][0];
+    assert_eq!(
+        (&problem["best_known_objective"], &problem["search"]["summary"]["hits"]),
+        (&0.0.into(), &1.into())
+    );
+    assert!(problem["search"]["runs"][0]["objective"].as_f64().is_some_and(|objective| objective < 1e-20));
+    assert!(problem.get("best_known_sum_sq").is_none() && problem.get("goal_sum_sq").is_none());
+    assert_eq!(run(&["--write"]).0, Some(0), "its own files are replaced");
+
+    let (code, _, stderr) = run(&["folding"]);
+    assert_eq!(code, Some(2));
+    assert!(stderr.contains("folding-bed: nothing to compare with"), "{stderr}");
+    let (code, _, stderr) = run(&["watt"]);
+    assert_eq!(code, Some(2));
+    assert!(stderr.contains("has \"watt\" in its name; there are triple-rocker-8"), "{stderr}");
 }

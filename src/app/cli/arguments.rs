@@ -410,8 +410,8 @@ pub struct Snap {
 pub struct Suite {
     /// Only problems whose name or file name holds this
     pub filter: Option<String>,
-    /// Run the problem files of this folder that have `best_known_sum_sq` in `[expect]` [default:
-    /// problems/literature where it is here, else the same files, which linkwright holds]
+    /// Run the problem files of this folder that have `best_known_sum_sq` (paths) or `objective` (motions) in `[expect]`
+    /// [default: problems/literature where it is here, else the same files, which linkwright holds]
     #[arg(long, value_name = "DIR")]
     pub problems: Option<PathBuf>,
     /// Seeds 1 to N for each problem
@@ -423,7 +423,8 @@ pub struct Suite {
     /// Print JSON instead of the tables
     #[arg(long)]
     pub json: bool,
-    /// Write results/literature.md and results/literature.json too (all problems, no FILTER): for linkwright's repository
+    /// Write results/literature.md and results/literature.json too, or with --problems the files of that folder's name (all
+    /// problems, no FILTER): for linkwright's repository
     #[arg(long, conflicts_with = "filter")]
     pub write: bool,
     /// Replace a file that is there even where linkwright did not write it, or where this command reads it

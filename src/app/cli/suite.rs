@@ -4,7 +4,7 @@ use super::arguments::Suite as Asked;
 use super::output::Output;
 use super::progress::Shown;
 use super::{Ended, interrupt, refuse, refuse_at, refuse_io, terminal};
-use crate::app::suite::choice::{NoProblems, chosen};
+use crate::app::suite::choice::{NoProblems, chosen, collection};
 use crate::app::suite::{Options, Step, suite};
 use crate::files::generator::FileKind;
 use crate::files::problem_file::ProblemFile;
@@ -18,16 +18,19 @@ use std::path::{Path, PathBuf};
 const PROBLEMS: &str = "problems/literature";
 /// The folder of the page and its JSON.
 const RESULTS: &str = "results";
-const PAGE: &str = "literature.md";
-const DATA: &str = "literature.json";
+/// The name of the literature's page and of its JSON; those of another folder bear its name.
+const LITERATURE: &str = "literature";
 
 /// Runs the command.
 pub fn run(asked: &Asked) -> Result<Ended, Ended> {
     let problems = problems(asked)?;
     // The place is looked at before anything runs: one that cannot be written to costs no search.
-    let place = asked.write.then(|| Place::take(asked.force)).transpose()?;
+    let collection = asked.problems.as_deref().and_then(collection);
+    let name = collection.clone().unwrap_or_else(|| LITERATURE.to_owned());
+    let place = asked.write.then(|| Place::take(name, asked.force)).transpose()?;
     let certify = asked.certify.then(CertifySpec::default);
-    let options = Options { seeds: asked.seeds, command: command(asked), certify, ..Options::default() };
+    let command = command(asked);
+    let options = Options { seeds: asked.seeds, command, collection, certify, ..Options::default() };
     let cancel = interrupt::watch("showing the runs that are over");
     let shown = Shown::of_suite();
     let outcome = suite(&problems, &options, cancel, &|step: &Step<'_>| shown.suite(step));
@@ -40,19 +43,20 @@ pub fn run(asked: &Asked) -> Result<Ended, Ended> {
     if let Some(place) = place.filter(|_| suite.complete) {
         place.output.write(&place.files(&json, &suite_markdown(&suite)))?;
         if !asked.json {
-            terminal::answer(&format!("\n  Written to {RESULTS}/{PAGE} and {RESULTS}/{DATA}\n"));
+            let name = &place.name;
+            terminal::answer(&format!("\n  Written to {RESULTS}/{name}.md and {RESULTS}/{name}.json\n"));
         }
     }
     if !suite.complete {
         let more = if asked.write { "; nothing was written" } else { "" };
-        terminal::tell(&format!("{}{more}", done(&suite, &options, problems.len())));
+        terminal::tell(&format!("{}{more}", done(&suite, &options, &problems)));
         return Err(Ended::Interrupted);
     }
     Ok(if suite.is_accepted() { Ended::Good } else { Ended::Bad })
 }
 
 /// Says how far an interrupted suite came.
-fn done(suite: &Suite, options: &Options, problems: usize) -> String {
+fn done(suite: &Suite, options: &Options, problems: &[ProblemFile]) -> String {
     let methods = suite.problems.iter().flat_map(|p| p.populations.iter().chain([&p.search]));
     let runs: usize = methods.map(|method| method.runs.len()).sum();
     format!("{runs} of {} runs are done", options.runs(problems))
@@ -104,14 +108,16 @@ fn problems(asked: &Asked) -> Result<Vec<ProblemFile>, Ended> {
 /// were not written.
 struct Place {
     folder: &'static Path,
+    /// The name of both files without their endings.
+    name: String,
     made: bool,
     output: Output,
 }
 
 impl Place {
-    fn take(force: bool) -> Result<Self, Ended> {
+    fn take(name: String, force: bool) -> Result<Self, Ended> {
         let folder = Path::new(RESULTS);
-        let place = Place { folder, made: !folder.exists(), output: Output::new([], force) };
+        let place = Place { folder, name, made: !folder.exists(), output: Output::new([], force) };
         std::fs::create_dir_all(folder).map_err(|e| refuse_io(folder, e))?;
         place.output.check(&place.files("", ""))?;
         tempfile::tempfile_in(folder)
@@ -121,8 +127,8 @@ impl Place {
 
     fn files<'a>(&self, json: &'a str, page: &'a str) -> [(PathBuf, FileKind, &'a str); 2] {
         [
-            (self.folder.join(DATA), FileKind::SuiteJson, json),
-            (self.folder.join(PAGE), FileKind::SuiteMarkdown, page),
+            (self.folder.join(format!("{}.json", self.name)), FileKind::SuiteJson, json),
+            (self.folder.join(format!("{}.md", self.name)), FileKind::SuiteMarkdown, page),
         ]
     }
 }

@@ -3,6 +3,7 @@
 use super::literature;
 use crate::app::inputs::toml_files;
 use crate::files::diagnostic::Diagnostic;
+use crate::files::name;
 use crate::files::problem_file;
 use crate::files::problem_file::ProblemFile;
 use std::io;
@@ -26,8 +27,19 @@ pub enum NoProblems {
         source: io::Error,
     },
     /// No answer is known of any problem.
-    #[error("no problem in {0} has an [expect] table with best_known_sum_sq")]
+    #[error(
+        "no problem in {0} has an [expect] table with best_known_sum_sq (of a path) or objective (of a motion)"
+    )]
     NoneKnown(String),
+    /// No answer is known of the problems that are asked for.
+    #[error(
+        "{names}: nothing to compare with; give a problem an [expect] table with best_known_sum_sq (of a path) or objective \
+         (of a motion)"
+    )]
+    NoneKnownOf {
+        /// The names of the problems.
+        names: String,
+    },
     /// No problem has the name that is asked for.
     #[error("no problem in {place} has {filter:?} in its name; there are {names}")]
     NoneNamed {
@@ -47,24 +59,45 @@ fn texts(faults: &[Box<Diagnostic>]) -> String {
 /// Problems with the names of their files.
 type Named = Vec<(String, ProblemFile)>;
 
-/// Returns the problems with a known answer whose name or file name holds `filter`, by file name: those of a folder, or
-/// those of the literature, which the program holds.
+/// Returns the problems whose name or file name holds `filter`, by file name: those of a folder, or those of the
+/// literature, which the program holds. Of at least one an answer is known.
 ///
 /// # Errors
 /// [`NoProblems`].
 pub fn chosen(folder: Option<&Path>, filter: &str) -> Result<Vec<ProblemFile>, NoProblems> {
     let place = folder.map_or("the literature".into(), |folder| folder.display().to_string());
-    let mut known = folder.map_or_else(built_in, of_folder)?;
-    known.retain(|(_, problem)| problem.expect.as_ref().is_some_and(|e| e.best_known_sum_sq.is_some()));
-    if known.is_empty() {
+    let mut named = folder.map_or_else(built_in, of_folder)?;
+    if !named.iter().any(is_known) {
         return Err(NoProblems::NoneKnown(place));
     }
-    let names: Vec<String> = known.iter().map(|(_, problem)| problem.name.clone()).collect();
-    known.retain(|(stem, problem)| problem.name.contains(filter) || stem.contains(filter));
-    if known.is_empty() {
-        return Err(NoProblems::NoneNamed { place, filter: filter.to_owned(), names: names.join(", ") });
+    let names = |named: &[&(String, ProblemFile)]| {
+        named.iter().map(|(_, problem)| problem.name.as_str()).collect::<Vec<_>>().join(", ")
+    };
+    let known = names(&named.iter().filter(|one| is_known(one)).collect::<Vec<_>>());
+    named.retain(|(stem, problem)| problem.name.contains(filter) || stem.contains(filter));
+    if named.is_empty() {
+        return Err(NoProblems::NoneNamed { place, filter: filter.to_owned(), names: known });
     }
-    Ok(known.into_iter().map(|(_, problem)| problem).collect())
+    if !named.iter().any(is_known) {
+        return Err(NoProblems::NoneKnownOf { names: names(&named.iter().collect::<Vec<_>>()) });
+    }
+    Ok(named.into_iter().map(|(_, problem)| problem).collect())
+}
+
+/// Returns whether an answer is known that others can be compared with.
+fn is_known((_, problem): &(String, ProblemFile)) -> bool {
+    super::known(problem).is_ok()
+}
+
+/// The name of the folder of the literature's problems.
+const LITERATURE: &str = "literature";
+
+/// Returns the name of a folder of problems, which a suite and its files bear; `None` for the literature's.
+pub fn collection(folder: &Path) -> Option<String> {
+    // Of `.` and `..` too.
+    let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let name = whole.file_name().unwrap_or_default().to_string_lossy();
+    (name != LITERATURE).then(|| name::legal(&name, "problems"))
 }
 
 /// Reads the problems of a folder, by file name; every file is read, so that the faults of all are shown.

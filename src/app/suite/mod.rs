@@ -1,6 +1,9 @@
 //! The suite: benchmark problems whose answer is known, each run from many seeds, and compared with the population
 //! searches at equal evaluations and with published answers.
 //!
+//! Answers of a path are compared by their sum of squared distances, those of a motion by their objective, which counts
+//! the angles too. Population searches do not take poses: a motion has none beside it.
+//!
 //! Every run is [`run`] on the problem of its file, with two changes: the seed, and a single candidate. Runs go one
 //! after the other on one thread, so that their times can be compared. All figures in a [`Suite`] are computed by the
 //! referee; only the times differ from one machine to another.
@@ -11,10 +14,12 @@ pub mod published;
 
 use crate::app::job::run::{Context, Finished, Job, RunError, prove, run};
 use crate::files::problem_file::{ProblemFile, Published};
-use crate::judge::rank::exact_sum_sq;
+use crate::judge::rank::{exact_cost, exact_sum_sq, searched};
 use crate::record::statistics::{Bar, Summary};
-use crate::record::suite::{FORMAT, MethodResult, ProblemResult, PublishedResult, Run, Smaller, Suite};
-use crate::record::{Certificate, Reason, Record, Tool};
+use crate::record::suite::{
+    FORMAT, Known, LeftOut, MethodResult, MotionErrors, ProblemResult, PublishedResult, Run, Smaller, Suite,
+};
+use crate::record::{Candidate, Certificate, Reason, Record, Tool};
 use crate::task::Problem;
 use crate::task::spec::{CertifySpec, MAX_EVALUATIONS, Method, ProblemSpec};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -32,13 +37,15 @@ pub struct Options {
     pub population_seeds: u64,
     /// The command that makes the same suite again; stored with the figures.
     pub command: String,
+    /// The name of the folder of the problems, where they are not those of the literature; stored with the figures.
+    pub collection: Option<String>,
     /// The options for certifying the best answer of each problem, on all threads; `None` for no certificates.
     pub certify: Option<CertifySpec>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { seeds: 10, population_seeds: 5, command: String::new(), certify: None }
+        Options { seeds: 10, population_seeds: 5, command: String::new(), collection: None, certify: None }
     }
 }
 
@@ -47,9 +54,13 @@ impl Options {
         self.population_seeds.min(self.seeds)
     }
 
-    /// Returns the number of runs for this number of problems.
-    pub fn runs(&self, problems: usize) -> u64 {
-        problems as u64 * (self.seeds + POPULATIONS.len() as u64 * self.population_seeds())
+    /// Returns the number of runs for these problems.
+    pub fn runs(&self, problems: &[ProblemFile]) -> u64 {
+        let of = |known: Known| match known {
+            Known::Path { .. } => self.seeds + POPULATIONS.len() as u64 * self.population_seeds(),
+            Known::Motion { .. } => self.seeds,
+        };
+        problems.iter().filter_map(|problem| known(problem).ok()).map(of).sum()
     }
 }
 
@@ -87,9 +98,33 @@ pub enum SuiteError {
     Thread(String),
 }
 
-/// Runs a suite: each problem from seeds 1 to [`Options::seeds`] with the method of its file, then with each of
+/// The number of poses from which on only finitely many four-bars meet them (Burmester 1888).
+const FINITELY_MANY: usize = 5;
+
+/// The reason why fewer poses have nothing to compare with.
+const OF_A_FAMILY: &str = "no objective under [expect] (a whole family of linkages meets fewer than five poses exactly, so \
+    that there is no least error to compare)";
+
+/// Returns what a problem's answers are compared with, or the reason why nothing is known that they could be.
+fn known(file: &ProblemFile) -> Result<Known, &'static str> {
+    let expect = file.expect.as_ref();
+    let Some(body) = &file.spec.task.body else {
+        let best = expect.and_then(|expect| Some((expect.best_known_sum_sq?, expect.goal_sum_sq)));
+        let (best_known_sum_sq, goal) = best.ok_or("no best_known_sum_sq under [expect]")?;
+        return Ok(Known::Path { best_known_sum_sq, goal_sum_sq: goal.unwrap_or(best_known_sum_sq) });
+    };
+    match expect.and_then(|expect| expect.objective) {
+        Some(best_known_objective) => {
+            Ok(Known::Motion { best_known_objective, angle_weight: body.angle_weight })
+        }
+        None if body.angle_deg.len() < FINITELY_MANY => Err(OF_A_FAMILY),
+        None => Err("no objective under [expect]"),
+    }
+}
+
+/// Runs a suite: each problem from seeds 1 to [`Options::seeds`] with the method of its file, then a path with each of
 /// [`POPULATIONS`] with the median number of evaluations of the first method. Problems without an expected
-/// `best_known_sum_sq` are left out.
+/// `best_known_sum_sq` (of a path) or `objective` (of a motion) are left out, and named with the reason.
 ///
 /// `cancel` ends the current run; that run does not count, and the results before it are returned.
 ///
@@ -103,14 +138,19 @@ pub fn suite(
 ) -> Result<Suite, SuiteError> {
     let pool =
         ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| SuiteError::Thread(e.to_string()))?;
-    let known: Vec<(&ProblemFile, f64)> =
-        problems.iter().filter_map(|file| Some((file, file.expect.as_ref()?.best_known_sum_sq?))).collect();
-    let total = options.runs(known.len());
+    let total = options.runs(problems);
     let mut runner = Runner { pool, cancel, observer, done: 0, total, cut_short: false };
-    let mut results = Vec::with_capacity(known.len());
-    for (file, best_known) in known {
+    let (mut comparable, mut left_out) = (Vec::new(), Vec::new());
+    for file in problems {
+        match known(file) {
+            Ok(known) => comparable.push((file, known)),
+            Err(why) => left_out.push(LeftOut { name: file.name.clone(), why: why.to_owned() }),
+        }
+    }
+    let mut results = Vec::with_capacity(comparable.len());
+    for (file, known) in comparable {
         let result = runner
-            .problem(file, best_known, options)
+            .problem(file, known, options)
             .map_err(|source| SuiteError::Run { problem: file.name.clone(), source })?;
         if !result.search.runs.is_empty() {
             results.push(result);
@@ -123,10 +163,12 @@ pub fn suite(
         format: FORMAT,
         tool: Tool::this(),
         command: options.command.clone(),
+        collection: options.collection.clone(),
         seeds: options.seeds,
         threads: 1,
         complete: runner.done == runner.total && !runner.cut_short,
         problems: results,
+        left_out,
     })
 }
 
@@ -153,40 +195,47 @@ impl Runner<'_> {
     fn problem(
         &mut self,
         file: &ProblemFile,
-        best_known: f64,
+        known: Known,
         options: &Options,
     ) -> Result<ProblemResult, RunError> {
         let problem = Problem::new(file.spec.clone())?;
-        let expect = file.expect.clone().unwrap_or_default();
-        let bar =
-            Bar { goal: expect.goal_sum_sq.unwrap_or(best_known), best_known, exact: exact_sum_sq(&problem) };
-        let (search, best) = self.method(file, file.spec.clone(), options.seeds, &bar)?;
+        let (exact, populations) = match known {
+            Known::Path { .. } => (exact_sum_sq(&problem), Ok(POPULATIONS)),
+            Known::Motion { .. } => (exact_cost(&problem), Err("population searches do not take poses")),
+        };
+        let bar = Bar { goal: known.goal(), best_known: known.best(), exact };
+        let (search, best) = self.method(file, &problem, file.spec.clone(), options.seeds, &bar)?;
         let (certificate, no_certificate) = match (options.certify, best) {
             (Some(certify), Some(record)) => self.certificate(record, certify),
             (Some(_), None) => (None, Some("there is no accepted answer".into())),
             (None, _) => (None, None),
         };
-        let mut populations = Vec::with_capacity(POPULATIONS.len());
-        for method in POPULATIONS {
+        let no_populations = populations.err().map(str::to_owned);
+        let mut found = Vec::with_capacity(POPULATIONS.len());
+        for method in populations.into_iter().flatten() {
             let Some(evaluations) = search.summary.median_evaluations.filter(|_| !self.cancelled()) else {
                 break;
             };
             let mut spec = file.spec.clone();
             spec.solve.method = method;
             spec.solve.evaluations = evaluations.clamp(1, MAX_EVALUATIONS);
-            populations.push(self.method(file, spec, options.population_seeds(), &bar)?.0);
+            found.push(self.method(file, &problem, spec, options.population_seeds(), &bar)?.0);
         }
-        let smaller_than_best_known = smallest(std::iter::once(&search).chain(&populations), &bar);
-        let published: Vec<PublishedResult> =
-            expect.published.iter().map(|entry| evaluated(&problem, entry)).collect();
+        let smaller_than_best_known = smallest(std::iter::once(&search).chain(&found), &bar);
+        let published: Vec<PublishedResult> = file
+            .expect
+            .iter()
+            .flat_map(|expect| &expect.published)
+            .map(|entry| evaluated(&problem, entry))
+            .collect();
         Ok(ProblemResult {
             name: file.name.clone(),
             source: file.source.clone(),
             points: problem.task().len(),
-            best_known_sum_sq: bar.best_known,
-            goal_sum_sq: bar.goal,
+            known,
             search,
-            populations,
+            populations: found,
+            no_populations,
             smaller_than_best_known,
             best_published: best_published(&published).cloned(),
             published,
@@ -212,10 +261,11 @@ impl Runner<'_> {
         (record.certificate, record.no_certificate)
     }
 
-    /// Returns the runs of a method, and the record with the least accepted sum.
+    /// Returns the runs of a method, and the record with the best accepted answer.
     fn method(
         &mut self,
         file: &ProblemFile,
+        problem: &Problem,
         mut spec: ProblemSpec,
         seeds: u64,
         bar: &Bar,
@@ -238,34 +288,45 @@ impl Runner<'_> {
                 break;
             }
             let first = record.candidates.first();
-            runs.push(Run {
+            let outcome = Run {
                 seed,
                 accepted: first.is_some_and(|c| c.accepted),
                 sum_sq: first.map(|c| c.error.sum_sq),
                 to_curve_sum_sq: first.map(|c| c.error.to_curve.sum_sq),
+                motion: first.and_then(|c| motion_errors(problem, c)),
                 evaluations: record.evaluations.objective,
                 search_s,
                 reason: record.termination.reason,
-            });
+            };
             self.done += 1;
-            let sum_sq = first.filter(|c| c.accepted).map(|c| c.error.sum_sq);
-            if let Some(sum_sq) = sum_sq.filter(|sum| best.as_ref().is_none_or(|(least, _)| sum < least)) {
-                best = Some((sum_sq, record));
+            let figure = outcome.figure().filter(|_| outcome.accepted);
+            if let Some(figure) = figure.filter(|f| best.as_ref().is_none_or(|(least, _)| f < least)) {
+                best = Some((figure, record));
             }
+            runs.push(outcome);
         }
         let result = MethodResult { method, evaluations_at_most, summary: Summary::of(&runs, bar), runs };
         Ok((result, best.map(|(_, record)| record)))
     }
 }
 
+/// Returns the errors of an answer of a motion; `None` for one of a path.
+fn motion_errors(problem: &Problem, candidate: &Candidate) -> Option<MotionErrors> {
+    let angle = candidate.error.angle?;
+    // The sum of squares even where the largest deviation is minimised: what is known is one.
+    let objective = searched(problem, candidate);
+    Some(MotionErrors { objective, rms: candidate.error.rms, rms_deg: angle.rms_deg })
+}
+
 /// Returns the smallest accepted answer of all runs, if it is smaller than the best known.
 fn smallest<'a>(methods: impl Iterator<Item = &'a MethodResult>, bar: &Bar) -> Option<Smaller> {
     methods
         .filter_map(|of| {
-            let best = of.summary.best.as_ref().filter(|best| bar.is_beaten_by(best.sum_sq))?;
-            Some(Smaller { method: of.method, seed: best.seed, sum_sq: best.sum_sq })
+            let best = of.summary.best.as_ref().filter(|best| bar.is_beaten_by(best.figure()))?;
+            let objective = best.motion.map(|motion| motion.objective);
+            Some(Smaller { method: of.method, seed: best.seed, sum_sq: best.sum_sq, objective })
         })
-        .min_by(|one, other| one.sum_sq.total_cmp(&other.sum_sq))
+        .min_by(|one, other| one.figure().total_cmp(&other.figure()))
 }
 
 fn evaluated(problem: &Problem, entry: &Published) -> PublishedResult {
@@ -292,6 +353,20 @@ fn best_published(published: &[PublishedResult]) -> Option<&PublishedResult> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::problem_file;
+
+    fn parsed(text: &str) -> ProblemFile {
+        problem_file::parse("one.toml", text, None, &[]).expect("a problem")
+    }
+
+    fn path(expect: &str) -> ProblemFile {
+        parsed(&format!("format = 1\n[task.path]\npoints = [[0, 0], [2, 1], [4, 0]]\n{expect}"))
+    }
+
+    fn motion(poses: usize, expect: &str) -> ProblemFile {
+        let poses = &[[0, 0, 0], [2, 1, 10], [4, 0, 15], [5, 2, 30], [7, 1, 50]][..poses];
+        parsed(&format!("format = 1\n[task.motion]\nposes = {poses:?}\n{expect}"))
+    }
 
     fn published(source: &str, printed_sum_sq: Option<f64>, sum_sq: Option<f64>) -> PublishedResult {
         PublishedResult {
@@ -322,7 +397,27 @@ mod tests {
     #[test]
     fn the_number_of_runs_counts_no_more_population_seeds_than_seeds() {
         let options = |seeds| Options { seeds, ..Options::default() };
-        assert_eq!(options(10).runs(3), 3 * (10 + 2 * 5));
-        assert_eq!(options(2).runs(1), 2 + 2 * 2);
+        let paths: Vec<ProblemFile> = (0..3).map(|_| path("[expect]\nbest_known_sum_sq = 0\n")).collect();
+        assert_eq!(options(10).runs(&paths), 3 * (10 + 2 * 5));
+        assert_eq!(options(2).runs(&paths[..1]), 2 + 2 * 2);
+    }
+
+    #[test]
+    fn the_number_of_runs_counts_no_population_searches_of_motions_and_nothing_that_is_left_out() {
+        let options = Options { seeds: 10, ..Options::default() };
+        let problems = [motion(5, "[expect]\nobjective = 0\n"), motion(5, ""), path("")];
+        assert_eq!(options.runs(&problems), 10);
+    }
+
+    #[test]
+    fn a_problem_with_nothing_to_compare_with_says_why() {
+        assert_eq!(known(&path("")), Err("no best_known_sum_sq under [expect]"));
+        assert_eq!(known(&motion(5, "[expect]\nrms_deg = 1\n")), Err("no objective under [expect]"));
+        let family = known(&motion(4, "")).expect_err("nothing is known");
+        assert!(family.contains("fewer than five poses exactly"), "{family}");
+        let given = known(&motion(3, "[expect]\nobjective = 2\n")).expect("it is given");
+        assert_eq!((given.best(), given.goal()), (2.0, 2.0));
+        let path = known(&path("[expect]\nbest_known_sum_sq = 1\ngoal_sum_sq = 3\n")).expect("it is given");
+        assert_eq!((path.best(), path.goal()), (1.0, 3.0));
     }
 }

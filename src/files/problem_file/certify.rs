@@ -27,7 +27,10 @@ pub(super) fn of(
         let message = format!("time_limit_s = {time_limit_s}: {range}");
         return toml.refuse("certify.time_limit_s", message, "write seconds; the default is 300");
     }
-    let warning = if asked && path.timing.is_none() {
+    let warning = if asked && path.body.is_some() {
+        let help = "remove the key; how often the best answer came back is recorded all the same";
+        Some(toml.at("solve.certify", "no certificate is available for poses of a body").with_help(help))
+    } else if asked && path.timing.is_none() {
         let help = "give the points crank angles (task.path.timing), or remove the key; how often the best answer \
                     came back is recorded all the same";
         Some(toml.at("solve.certify", "no certificate is available for free timing").with_help(help))

@@ -25,11 +25,11 @@ pub enum NoCertificate {
     /// The timing is free: each point is met at the nearest crank angle.
     #[error("no certificate is available for free timing: give the points crank angles (task.path.timing)")]
     FreeTiming,
-    /// The task gives the angles of a body.
+    /// The task is a motion: a body's angles count beside its places.
     #[error(
-        "no certificate is available for the poses of a body: its bound is of the errors of places alone"
+        "no certificate is available for poses of a body: the proof covers the places of a path alone, without angles"
     )]
-    Poses,
+    Motion,
     /// The objective is not the plain sum of squares.
     #[error("no certificate is available yet for weighted points or for objective = \"max-deviation\"")]
     OtherObjective,
@@ -94,7 +94,7 @@ impl Subject {
         let best = record.candidates.first().ok_or(NoCertificate::NoCandidate)?.error.sum_sq;
         let path = &spec.task;
         if path.body.is_some() {
-            return Err(NoCertificate::Poses);
+            return Err(NoCertificate::Motion);
         }
         let timing = path.timing.as_ref().ok_or(NoCertificate::FreeTiming)?;
         let problem =
