@@ -104,3 +104,17 @@ def test_bad_poses_are_refused_with_the_remedy() -> None:
         lw.motion([[1, 2, 3, 4]] * 5)
     with pytest.raises(lw.ProblemError, match="genetic"):
         lw.motion(POSES, solve={"method": "genetic"})
+
+
+def test_poses_are_passed_at_given_crank_angles() -> None:
+    turns = [10, 50, 90, 140, 200, 260]
+    ground = math.degrees(math.atan2(1, 4))
+    problem = lw.motion(POSES, crank_deg=[turn - ground for turn in turns], offset="ground")
+    best = lw.synth(problem).candidates[0]
+    assert best.accepted
+    assert np.allclose(best.crank_deg, turns, atol=1e-6)
+    assert best.linkage.a == pytest.approx(LINKAGE.a, rel=1e-7)
+    passed = poses_of(best.linkage, best.crank_deg, best.frame_deg)
+    assert np.abs(passed[:, :2] - POSES[:, :2]).max() < 1e-7
+    with pytest.raises(lw.ProblemError, match="6 poses and 2 crank angles"):
+        lw.motion(POSES, crank_deg=[0, 10])
