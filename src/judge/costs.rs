@@ -121,7 +121,10 @@ impl At<'_> {
         let space = self.space;
         let free_timing = !self.start.positions.is_empty();
         let mut kinds = Vec::new();
-        self.problem.requirements(space).rows(self.start.setting.aim, self.shape, motion, &mut |row| {
+        let own = self.problem.frame_is_free().then(|| space.offset(&self.start.design));
+        let frame = own.or(x.get(DESIGN).copied());
+        let requirements = self.problem.requirements(space);
+        requirements.rows(self.start.setting.aim, self.shape, motion, frame, &mut |row| {
             kinds.push((row.kind, free_timing && row.by_turn().abs() > MOVED_BY_POINTS * size));
         });
         // Unknowns that can move, lengths in sizes of the target.

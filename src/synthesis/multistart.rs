@@ -22,7 +22,7 @@ use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve,
 };
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Evaluations};
-use crate::task::forms::design_space::Design;
+use crate::task::forms::design_space::{DESIGN, Design};
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::{TimedFit, TimedMotionFit, TimedPathFit};
@@ -196,7 +196,8 @@ pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     };
     let shape = fit.space().shape(&start.design)?;
     let motion = fit.motion(&shape, &start.positions);
-    let lack = fit.requirements().lack(start.setting.aim, &shape, &motion);
+    let frame = problem.frame_is_free().then(|| fit.space().offset(&start.design));
+    let lack = fit.requirements().lack(start.setting.aim, &shape, &motion, frame);
     Some(cost + scale * lack * lack)
 }
 
@@ -205,10 +206,12 @@ fn timed_promise<const N: usize, const R: usize>(
     fit: &TimedFit<'_, N, R>,
     start: &Start,
 ) -> Option<(f64, f64)> {
-    let cost = fit.cost(&fit.unknowns(&start.design), &start.positions)?;
+    let unknowns = fit.unknowns(&start.design);
+    let cost = fit.cost(&unknowns, &start.positions)?;
     let shape = fit.space().shape(&start.design)?;
     let motion = fit.motion(&start.design, &shape);
-    Some((cost, fit.requirements().lack(start.setting.aim, &shape, &motion)))
+    let frame = unknowns.get(DESIGN).copied();
+    Some((cost, fit.requirements().lack(start.setting.aim, &shape, &motion, frame)))
 }
 
 /// The end of a local fit.

@@ -37,9 +37,11 @@ use crate::mechanism::{AssemblyMode, Pose};
 use crate::numbers::arithmetic::streams::{Stream, below, stream, uniform};
 use crate::numbers::optimise::compact_lm::{CompactOptions, solve};
 use crate::record::{Candidate, Evaluations, Repeats};
+use crate::task::forms::design_space::DESIGN;
 use crate::task::forms::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
 use crate::task::forms::rows::{Motion, Requirements, nearest_type};
 use crate::task::forms::start::Start;
+use crate::task::forms::timed::TimedMotionFit;
 use crate::task::{AngleOffset, Problem, Setting, Timing};
 use std::f64::consts::{PI, TAU};
 
@@ -365,9 +367,12 @@ impl<'a> Timed<'a> {
         };
         let (one, other) = (direction * self.span.0 + base, direction * self.span.1 + base);
         let motion = Motion::Stretch(one.min(other), one.max(other), assembly);
-        let lack = self.requirements.lack(aim, shape, &motion);
-        let outside = space.excess(shape) / problem.task().size();
         let start = Start { design: space.design(shape, *offset), setting, positions: Vec::new() };
+        let pins = problem.spec().require.pins_in.as_ref();
+        let frame =
+            pins.and_then(|_| Some(TimedMotionFit::new(problem, setting)?.unknowns(&start.design)[DESIGN]));
+        let lack = self.requirements.lack(aim, shape, &motion, frame);
+        let outside = space.excess(shape) / problem.task().size();
         Some((start, outside + lack))
     }
 }

@@ -75,6 +75,19 @@ impl Similarity {
         [a.min(c), b.min(d), a.max(c), b.max(d)]
     }
 
+    /// Returns the image of a region in the frame of a body, which turns and moves with the body.
+    fn in_the_body(&self, region: &Region) -> Region {
+        let across = if self.mirrors { -self.scale } else { self.scale };
+        let place = |[x, y]: [f64; 2]| [x * self.scale, y * across];
+        match region {
+            Region::Box([x0, y0, x1, y1]) => {
+                let ([a, b], [c, d]) = (place([*x0, *y0]), place([*x1, *y1]));
+                Region::Box([a, b.min(d), c, b.max(d)])
+            }
+            Region::Polygon(points) => Region::Polygon(points.iter().copied().map(place).collect()),
+        }
+    }
+
     fn pivot(&self, [x, y]: [Limits; 2]) -> [Limits; 2] {
         let [x0, y0, x1, y1] = self.corners([x.0, y.0, x.1, y.1]);
         [Limits(x0, x1), Limits(y0, y1)]
@@ -180,6 +193,9 @@ impl ProblemSpec {
             Some(Region::Polygon(points)) => points.iter_mut().for_each(|point| *point = by.point(*point)),
             None => {}
         }
+        if let Some(region) = &mut require.pins_in {
+            *region = by.in_the_body(region);
+        }
         if let Some(corners) = &mut require.footprint_in {
             *corners = by.corners(*corners);
         }
@@ -256,6 +272,7 @@ impl ProblemSpec {
         let require = &mut spec.require;
         let region = require.pivots_in.iter_mut().flat_map(Region::points_mut);
         region.chain(require.footprint_in.iter_mut().flatten()).for_each(|x| *x = at(*x));
+        require.pins_in.iter_mut().flat_map(Region::points_mut).for_each(|x| *x = at(*x));
         for x in [&mut require.extent_max, &mut require.longest_max].into_iter().flatten() {
             *x = of_itself(*x);
         }
@@ -279,7 +296,8 @@ impl ProblemSpec {
             design.coupler_y,
         ];
         let region = self.require.pivots_in.iter().flat_map(Region::numbers);
-        let boxes = region.chain(self.require.footprint_in.into_iter().flatten());
+        let boxes = region.chain(self.require.pins_in.iter().flat_map(Region::numbers));
+        let boxes = boxes.chain(self.require.footprint_in.into_iter().flatten());
         let mut limits: Vec<f64> =
             pivots.chain(lengths.into_iter().flatten()).flat_map(|Limits(low, high)| [low, high]).collect();
         limits.extend(boxes);

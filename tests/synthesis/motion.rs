@@ -143,11 +143,15 @@ fn poses_of_random_linkages_are_met_and_noisy_ones_fitted_as_well_as_from_the_tr
 fn derivatives_of_a_motion_agree_with_central_differences() {
     let draws = &mut stream(72, 0);
     let mut errors = Vec::new();
-    for _ in 0..40 {
+    for case in 0..40 {
         let taken = taken(draws, 7, 0.02);
+        let pins = ["[-2, -1, 3, 2]", "[[-2, -1], [3, -2], [2, 3], [0, 1]]"][case % 2];
         let spec = problem(
             &taken.poses,
-            "[require]\ntype = [\"crank-rocker\"]\ntransmission_deg_min = 30\nfootprint_in = [-90, -90, 90, 90]\n",
+            &format!(
+                "[require]\ntype = [\"crank-rocker\"]\ntransmission_deg_min = 30\nfootprint_in = [-90, -90, 90, 90]\n\
+                 pins_in = {pins}\n"
+            ),
         );
         let problem = Problem::new(spec).expect("a problem");
         let shape = Shape::from(&taken.linkage);
@@ -189,7 +193,8 @@ fn a_motion_in_another_place_size_and_order_has_the_same_answer() {
     let draws = &mut stream(73, 0);
     for case in 0..8 {
         let taken = taken(draws, 9, 0.01);
-        let spec = problem(&taken.poses, "[solve]\ncandidates = 3\nadvice = false\n");
+        let wish = if case % 2 == 0 { "" } else { "[require]\npins_in = [-4, -3, 5, 2]\n" };
+        let spec = problem(&taken.poses, &format!("{wish}[solve]\ncandidates = 3\nadvice = false\n"));
         let record = solved(spec.clone());
         let Some(best) = record.candidates.first() else { continue };
         for (mirrors, turns, reversed) in

@@ -104,7 +104,7 @@ fn derivatives_of_a_timed_motion_agree_with_central_differences() {
         let mut errors = Vec::new();
         for _ in 0..30 {
             let taken = taken(draws, 7, 0.02);
-            let lines = "type = [\"crank-rocker\"]\ntransmission_deg_min = 30\n";
+            let lines = "type = [\"crank-rocker\"]\ntransmission_deg_min = 30\npins_in = [[-2, -1], [3, -2], [1, 4]]\n";
             let problem = Problem::new(drawn(&taken, offset, lines)).expect("a problem");
             let (setting, design) = truth(&problem, &taken, offset);
             let fit = TimedMotionFit::new(&problem, setting).expect("the timing is prescribed");
@@ -274,4 +274,52 @@ fn the_crank_angles_of_poses_come_from_a_table_or_a_column() {
     let written = serde_json::to_string(&spec.task).expect("JSON");
     assert!(written.contains(r#""timing":{"crank_deg":[0.0,30.0,70.0],"offset":"ground"}"#), "{written}");
     assert_eq!(serde_json::from_str::<linkwright::spec::TaskSpec>(&written).expect("a task"), spec.task);
+}
+
+#[test]
+fn the_pins_of_a_body_lie_in_their_region() {
+    let draws = &mut stream(87, 0);
+    let (mut met, mut moved) = (0, 0);
+    for case in 0..16 {
+        let taken = taken(draws, 7, 0.005);
+        let size = taken.poses.iter().map(|(p, _)| (p - taken.poses[0].0).norm()).fold(0.0, f64::max);
+        let (x, y) = (0.9 * size, 0.7 * size);
+        let region = match case % 2 {
+            0 => format!("[{}, {}, {x}, {y}]", -x, -y),
+            _ => format!("[[{x}, {y}], [{}, {y}], [{}, {}], [{x}, {}]]", -x, -x, -y, -y),
+        };
+        let timing = if case % 4 < 2 { String::new() } else { timing(&taken, OFFSETS[case % 3]) };
+        let bounds = wide(taken.poses[0].0, 12.0 * taken.linkage.longest_link());
+        let free = problem(&taken.poses, &format!("{timing}{bounds}{ALONE}"));
+        let held = problem(&taken.poses, &format!("{timing}{bounds}[require]\npins_in = {region}\n{ALONE}"));
+        let (free, held) = (solved(free), solved(held));
+        assert_true(&held);
+        // C and D by their distances, in the body's own directions at the first pose.
+        let pins = |candidate: &linkwright::Candidate| {
+            let l = &candidate.linkage;
+            let joints = l
+                .position_with(candidate.crank_deg[0].to_radians(), candidate.t1_at[0])
+                .joints()
+                .expect("it closes");
+            let axis = (joints.follower_pin - joints.crank_pin).arg()
+                + candidate.frame_deg.expect("a frame").to_radians();
+            [joints.crank_pin, joints.follower_pin].map(|pin| {
+                let off = pin - joints.coupler_point;
+                (off.re * axis.cos() + off.im * axis.sin(), off.im * axis.cos() - off.re * axis.sin())
+            })
+        };
+        let inside = |(u, v): (f64, f64)| u.abs() <= x * (1.0 + 1e-6) && v.abs() <= y * (1.0 + 1e-6);
+        if let Some(best) = held.candidates.first().filter(|best| best.accepted) {
+            met += 1;
+            assert!(pins(best).into_iter().all(inside), "{case}: {:?}", pins(best));
+            let least = free.candidates[0].error.objective;
+            assert!(best.error.objective >= least * (1.0 - 1e-6), "{case}");
+            moved += usize::from(!pins(&free.candidates[0]).into_iter().all(inside));
+        }
+        // What lies outside is not accepted.
+        for other in held.candidates.iter().filter(|other| !pins(other).into_iter().all(inside)) {
+            assert!(!other.accepted, "{case}");
+        }
+    }
+    assert!(met >= 12 && moved >= 4, "{met} {moved}");
 }

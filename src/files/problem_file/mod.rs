@@ -182,6 +182,7 @@ fn parse_at(
     solve.certify = certify;
     warnings.extend(in_vain);
     method_of(&toml, &path, solve.method)?;
+    pins_of(&toml, &path, &require)?;
     if solve.objective == Objective::MaxDeviation {
         warnings.extend(deviation_of(&toml, &path)?);
     }
@@ -334,6 +335,15 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Checked<SolveSpec> {
         genetic,
         differential_evolution,
     })
+}
+
+/// Checks that there is a body, where its pins are to lie in a part of it.
+fn pins_of(toml: &TomlText<'_>, task: &TaskSpec, require: &RequireSpec) -> Checked<()> {
+    if require.pins_in.is_none() || task.body.is_some() {
+        return Ok(());
+    }
+    let help = "remove it, or give the body's poses in [task.motion]; pivots_in is for the fixed pivots";
+    toml.refuse("require.pins_in", "pins_in is a part of a body, and a path has no body", help)
 }
 
 /// Checks that a method searches for poses, in a motion.

@@ -13,16 +13,29 @@ fn inside(held: [f64; 4], limit: [f64; 4]) -> Finding {
 
 pub(super) fn pivots(judged: &Judged<'_>) -> Option<Finding> {
     let linkage = &judged.candidate.linkage;
-    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-    let limit = match judged.require().pivots_in.as_ref()? {
-        Region::Box(corners) => *corners,
-        Region::Polygon(polygon) => {
-            // The distance from the boundary of the pivot that is nearer to it or farther outside.
-            let depth = |pivot: Complex| depth(polygon, pivot);
-            return Some(Finding::least(depth(a).min(depth(b)), 0.0));
+    let region = judged.require().pivots_in.as_ref()?;
+    Some(both_inside(region, linkage.crank_pivot(), linkage.follower_pivot()))
+}
+
+/// The moving pins, in the frame of the body whose origin is P.
+pub(super) fn pins(judged: &Judged<'_>) -> Option<Finding> {
+    let region = judged.require().pins_in.as_ref()?;
+    let linkage = &judged.candidate.linkage;
+    // The body's x axis as seen from the coupler, whose own runs from C to D.
+    let axis = Complex::from_polar(1.0, judged.candidate.frame_deg?.to_radians());
+    let from_origin = |along: f64| (Complex::new(along, 0.0) - linkage.coupler_offset()) / axis;
+    Some(both_inside(region, from_origin(0.0), from_origin(linkage.coupler())))
+}
+
+/// Returns whether a region holds two places: their box or, of a polygon, the distance from its boundary of the place that is
+/// nearer to it or farther outside.
+fn both_inside(region: &Region, a: Complex, b: Complex) -> Finding {
+    match region {
+        Region::Box(corners) => {
+            inside([a.re.min(b.re), a.im.min(b.im), a.re.max(b.re), a.im.max(b.im)], *corners)
         }
-    };
-    Some(inside([a.re.min(b.re), a.im.min(b.im), a.re.max(b.re), a.im.max(b.im)], limit))
+        Region::Polygon(polygon) => Finding::least(depth(polygon, a).min(depth(polygon, b)), 0.0),
+    }
 }
 
 /// Returns the distance of a place from the boundary of a polygon, positive inside, by the winding of its corners around

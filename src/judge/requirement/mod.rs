@@ -68,6 +68,7 @@ impl Judged<'_> {
             RequirementKind::Transmission => transmission::judged(self),
             RequirementKind::LinkRatio => link_ratio::judged(self),
             RequirementKind::PivotsIn => boxes::pivots(self),
+            RequirementKind::PinsIn => boxes::pins(self),
             RequirementKind::FootprintIn => boxes::footprint(self),
             RequirementKind::ExtentMax => extent_max::judged(self),
             RequirementKind::LongestMax => longest_max::judged(self),

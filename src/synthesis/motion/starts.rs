@@ -92,8 +92,12 @@ impl<'a> DyadStarts<'a> {
     /// Draws a pin of the body, with the circle that it stays nearest to.
     fn drawn(&self, stream: &mut Stream) -> Option<Dyad> {
         let reach = REACH * self.problem.task().size();
+        let [x0, y0, x1, y1] = match &self.problem.spec().require.pins_in {
+            None => [-reach, -reach, reach, reach],
+            Some(region) => region.corners(),
+        };
         for _ in 0..PINS {
-            let pin = Complex::new(uniform(stream, -reach, reach), uniform(stream, -reach, reach));
+            let pin = Complex::new(uniform(stream, x0, x1), uniform(stream, y0, y1));
             let dyad = match *self.poses.as_slice() {
                 [] => None,
                 [one] => {

@@ -191,7 +191,7 @@ impl<'a> PathFitness<'a> {
         let sums = timed_sums(&shape.kernel(AssemblyMode::Plus), turn, phases, &self.targets, self.deviation);
         let aim = nearest_type(shape.links(), self.problem.types());
         let motion = self.timed_motion(*direction, offset, assembly);
-        let lack = self.requirements.lack(aim, shape, &motion);
+        let lack = self.requirements.lack(aim, shape, &motion, None);
         let setting = Setting { aim, assembly, direction: *direction, side };
         Some(sums.reading(setting, lack))
     }
@@ -226,9 +226,9 @@ impl<'a> PathFitness<'a> {
         shared: &mut Option<f64>,
     ) -> f64 {
         if self.requirements.depend_on_motion() {
-            return self.requirements.lack(aim, shape, motion);
+            return self.requirements.lack(aim, shape, motion, None);
         }
-        *shared.get_or_insert_with(|| self.requirements.lack(aim, shape, motion))
+        *shared.get_or_insert_with(|| self.requirements.lack(aim, shape, motion, None))
     }
 
     fn timed_readings(&self, side: CouplerSide, offset: f64, shape: &Shape, offer: &mut dyn FnMut(Reading)) {

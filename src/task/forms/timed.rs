@@ -260,11 +260,14 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
         let x = &Self::design(unknowns);
         let Some(shape) = self.space.shape(x) else { return };
         let (rule, by_ground_angle) = (self.space.chain_rule(x, &shape), Self::by_ground_angle(&shape));
-        self.requirements.rows(self.setting.aim, &shape, &self.motion(x, &shape), &mut |row| {
-            each(row.value, &|| ConstraintRow {
-                value: row.value,
-                gradient: self.by_design(&rule, row.shape, row.by_turn(), by_ground_angle),
-                own: [None; MOST_OWN],
+        let frame = unknowns.get(DESIGN).copied();
+        self.requirements.rows(self.setting.aim, &shape, &self.motion(x, &shape), frame, &mut |row| {
+            each(row.value, &|| {
+                let mut gradient = self.by_design(&rule, row.shape, row.by_turn(), by_ground_angle);
+                if let Some(by_frame) = gradient.get_mut(DESIGN) {
+                    *by_frame = row.by_frame;
+                }
+                ConstraintRow { value: row.value, gradient, own: [None; MOST_OWN] }
             });
         });
     }

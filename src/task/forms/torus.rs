@@ -419,7 +419,7 @@ impl<const R: usize> TorusFit<'_, R> {
         }
         ConstraintRow {
             value: row.value,
-            gradient: self.space.chain_rule(x, shape).by_design(&by_shape, 0.0),
+            gradient: self.space.chain_rule(x, shape).by_design(&by_shape, row.by_frame),
             own,
         }
     }
@@ -595,7 +595,8 @@ impl<const R: usize> BlockLeastSquares<DESIGN, R> for TorusFit<'_, R> {
     fn constraints(&self, x: &Design, state: &Positions, each: &mut EachConstraint<'_, DESIGN>) {
         let Some(shape) = self.space.shape(x) else { return };
         let (motion, ends) = self.motion_between(&shape, state);
-        self.requirements.rows(self.setting.aim, &shape, &motion, &mut |row| {
+        let frame = self.problem.frame_is_free().then(|| self.space.offset(x));
+        self.requirements.rows(self.setting.aim, &shape, &motion, frame, &mut |row| {
             each(row.value, &|| self.constraint(row, x, &shape, state, ends));
         });
     }

@@ -16,6 +16,7 @@ mod link_ratio;
 mod linkage_type;
 mod longest_max;
 mod order;
+mod pins_in;
 mod pivots_in;
 mod tolerance;
 mod tolerance_deg;
@@ -46,6 +47,8 @@ pub enum RequirementKind {
     LinkRatio,
     /// The key `require.pivots_in`.
     PivotsIn,
+    /// The key `require.pins_in`.
+    PinsIn,
     /// The key `require.footprint_in`.
     FootprintIn,
     /// The key `require.extent_max`.
@@ -70,9 +73,10 @@ pub enum RequirementKind {
 
 impl RequirementKind {
     /// Every kind, in the order in which conflicts name them and relaxations try them.
-    pub const IN_CONFLICTS: [RequirementKind; 14] = [
+    pub const IN_CONFLICTS: [RequirementKind; 15] = [
         Self::Transmission,
         Self::PivotsIn,
+        Self::PinsIn,
         Self::FootprintIn,
         Self::ExtentMax,
         Self::LongestMax,
@@ -109,7 +113,7 @@ impl RequirementKind {
     }
 
     /// Returns every kind, in the order of a record.
-    pub fn all() -> [RequirementKind; 14] {
+    pub fn all() -> [RequirementKind; 15] {
         let mut kinds = Self::IN_CONFLICTS;
         kinds.sort_unstable();
         kinds
@@ -122,6 +126,7 @@ impl RequirementKind {
             Self::Transmission => &transmission::TRANSMISSION,
             Self::LinkRatio => &link_ratio::LINK_RATIO,
             Self::PivotsIn => &pivots_in::PIVOTS_IN,
+            Self::PinsIn => &pins_in::PINS_IN,
             Self::FootprintIn => &footprint_in::FOOTPRINT_IN,
             Self::ExtentMax => &extent_max::EXTENT_MAX,
             Self::LongestMax => &longest_max::LONGEST_MAX,
@@ -269,6 +274,8 @@ pub(crate) struct RawRequire {
     pub link_ratio_max: Option<Number>,
     /// The box [xmin, ymin, xmax, ymax] or the polygon [[x, y], ...] that must hold both fixed pivots.
     pub pivots_in: Option<RegionNumbers>,
+    /// The box or the polygon, in the body's frame, that must hold both moving pins C and D; of a motion.
+    pub pins_in: Option<RegionNumbers>,
     /// The box [xmin, ymin, xmax, ymax] that must hold every joint and P over the motion used.
     pub footprint_in: Option<Corners>,
     /// The greatest diagonal of the box of every joint and P over the motion used, wherever it lies; where silent, any.
@@ -310,6 +317,9 @@ pub struct RequireSpec {
     /// [xmin, ymin, xmax, ymax] or a polygon [[x, y], ...] that holds both fixed pivots.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pivots_in: Option<Region>,
+    /// [xmin, ymin, xmax, ymax] or a polygon [[x, y], ...], in the body's frame, that holds both moving pins.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pins_in: Option<Region>,
     /// [xmin, ymin, xmax, ymax] that holds every joint and P over the motion used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub footprint_in: Option<[f64; 4]>,
@@ -364,6 +374,7 @@ impl From<RawRequire> for RequireSpec {
             transmission_over: raw.transmission_over,
             link_ratio_max: number(raw.link_ratio_max).unwrap_or(DEFAULT_LINK_RATIO),
             pivots_in: raw.pivots_in.map(|region| region.0),
+            pins_in: raw.pins_in.map(|region| region.0),
             footprint_in: corners(raw.footprint_in),
             extent_max: number(raw.extent_max),
             longest_max: raw.longest_max.and_then(LengthOrAny::length),

@@ -29,16 +29,21 @@ pub(super) const PIVOTS_IN: Definition = Definition {
 };
 
 fn check(require: &RequireSpec, _: Option<&TimingSpec>) -> Result<(), Refusal> {
-    match &require.pivots_in {
+    check_region(require.pivots_in.as_ref())
+}
+
+/// Checks the corners of a region.
+pub(super) fn check_region(region: Option<&Region>) -> Result<(), Refusal> {
+    match region {
         Some(Region::Polygon(corners)) if !(3..=MOST_CORNERS).contains(&corners.len()) => Refusal::because(
             format!("the polygon has {} corners, 3 to {MOST_CORNERS} are read", corners.len()),
             "write [[x, y], [x, y], [x, y], ...], or a box [xmin, ymin, xmax, ymax]",
         ),
         Some(Region::Polygon(corners)) if area(corners) == 0.0 => Refusal::because(
             "the corners of the polygon lie on one line".to_owned(),
-            "give corners that enclose the room for the pivots",
+            "give corners that enclose some room",
         ),
-        region => boxes::check(region.as_ref().and_then(Region::as_box)),
+        region => boxes::check(region.and_then(Region::as_box)),
     }
 }
 

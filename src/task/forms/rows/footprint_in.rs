@@ -16,7 +16,7 @@ pub(super) fn rows(at: &At<'_>, each: &mut dyn FnMut(&Row)) {
                 let extreme = swept.extreme(joint, side)?;
                 let (shape, by_crank) = extreme.derivative(at.shape, joint, side);
                 let value = side.inwards(extreme.joints[joint]) - side.sign() * limit - at.margin();
-                Some(Row { kind, value, shape, turns: Turn::at(extreme.place, by_crank) })
+                Some(Row { turns: Turn::at(extreme.place, by_crank), ..Row::still(kind, value, shape) })
             });
             // A linkage without any position has no footprint: its violation is the target's size.
             each(&row.unwrap_or(Row::still(kind, -at.size, [0.0; SHAPE])));

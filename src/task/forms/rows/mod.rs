@@ -5,6 +5,7 @@
 //! - link ratio R: l_i - l_j / R >= 0 for all pairs;
 //! - transmission angle: size (cos mu_min - cos mu) >= 0 and size (cos mu + cos mu_min) >= 0 at the extremes of
 //!   the diagonal |CB|, cos mu = (b^2 + c^2 - s^2)/(2 b c);
+//! - pins: the distance of C and D from the boundary of their region, in the frame of the body;
 //! - boxes: the distance to each side of the extreme joint, whose derivative is that of the joint at its
 //!   extreme position (Danskin 1967);
 //! - extent: the limit less the diagonal of the box of all joints, by its sides;
@@ -21,6 +22,7 @@ mod footprint_in;
 mod link_ratio;
 mod linkage_type;
 mod longest_max;
+mod pins_in;
 mod pivots_in;
 mod swept;
 mod transmission;
@@ -112,6 +114,8 @@ pub struct Row {
     pub shape: [f64; SHAPE],
     /// The derivatives by a turn of the crank at the positions at which it is evaluated.
     pub turns: [Turn; MOST_TURNS],
+    /// The derivative by the frame of the body, the angle from the coupler's direction to the body's x axis.
+    pub by_frame: f64,
 }
 
 /// The most positions at which one requirement is evaluated: one for each side of a box.
@@ -139,7 +143,7 @@ impl Turn {
 impl Row {
     /// Returns a row that does not depend on the motion.
     fn still(kind: RowKind, value: f64, shape: [f64; SHAPE]) -> Row {
-        Row { kind, value, shape, turns: [Turn::NONE; MOST_TURNS] }
+        Row { kind, value, shape, turns: [Turn::NONE; MOST_TURNS], by_frame: 0.0 }
     }
 
     /// Returns the derivative dg/dphi by a turn of all crank angles together.
@@ -187,12 +191,14 @@ impl Requirements {
     }
 
     /// Calls `each` for every requirement, always as many and in the same order for the same problem and the
-    /// same `aim`, the type that is searched for (`None`: any). No allocation.
+    /// same `aim`, the type that is searched for (`None`: any). No allocation. Where the body of a motion lies is given by its
+    /// `frame`, in radians; without it there are no rows of its pins.
     pub fn rows(
         &self,
         aim: Option<LinkageType>,
         shape: &Shape,
         motion: &Motion<'_>,
+        frame: Option<f64>,
         each: &mut dyn FnMut(&Row),
     ) {
         let at = At::new(self, shape, motion);
@@ -200,6 +206,9 @@ impl Requirements {
         link_ratio::rows(&at, each);
         derived::rows(&at, &self.derived, each);
         pivots_in::rows(&at, each);
+        if let Some(frame) = frame {
+            pins_in::rows(&at, frame, each);
+        }
         transmission::rows(&at, each);
         footprint_in::rows(&at, each);
         extent_max::rows(&at, each);
@@ -215,9 +224,15 @@ impl Requirements {
     }
 
     /// Returns the total violation of the rows, in sizes of the target; 0 if all are met.
-    pub fn lack(&self, aim: Option<LinkageType>, shape: &Shape, motion: &Motion<'_>) -> f64 {
+    pub fn lack(
+        &self,
+        aim: Option<LinkageType>,
+        shape: &Shape,
+        motion: &Motion<'_>,
+        frame: Option<f64>,
+    ) -> f64 {
         let mut lack = 0.0;
-        self.rows(aim, shape, motion, &mut |row| lack += (-row.value).max(0.0));
+        self.rows(aim, shape, motion, frame, &mut |row| lack += (-row.value).max(0.0));
         lack / self.size
     }
 }

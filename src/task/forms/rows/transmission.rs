@@ -83,6 +83,7 @@ pub(super) fn rows(at: &At<'_>, each: &mut dyn FnMut(&Row)) {
             value: size * (limit.cos() - sign * cos),
             shape: by.map(|d| size * sign * s / (b * c) * d),
             turns: Turn::at(place, size * sign * s / (b * c) * by_crank),
+            by_frame: 0.0,
         };
         row.shape[5] -= size * sign * (1.0 / c - cos / b);
         row.shape[6] -= size * sign * (1.0 / b - cos / c);
