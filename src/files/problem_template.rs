@@ -85,7 +85,7 @@ fn motion_template(name: &str, poses_file: Option<&str>) -> String {
     // A body that is moved by hand needs no crank that turns fully.
     let requirements = requirements().replace("type = ", "# type = ");
     let timing = TIMING.replace("task.path", "task.motion").replace("point", "pose");
-    head + &poses + &timing + &design + BODY + REQUIRE + &requirements + SOLVE + END
+    head + &poses + &timing + &design + BODY + REQUIRE + &requirements + PINS + SOLVE + END
 }
 
 fn path_template(name: &str, points_file: Option<&str>) -> String {
@@ -173,6 +173,11 @@ const PINS_APART: &str =
 const BODY: &str = "\
 # coupler_x = [-500, 500]       # the body's point along the coupler, from the crank's pin
 # coupler_y = [-500, 500]       # and across it
+";
+
+/// The requirement that a motion alone can have.
+const PINS: &str = "\
+# pins_in = [-300, -200, 300, 200]         # where in the body's own frame there is room for its two pins; or a polygon
 ";
 
 const REQUIRE: &str = "
