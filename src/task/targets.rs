@@ -67,20 +67,19 @@ pub struct Body {
     pub tolerances: Option<Vec<f64>>,
 }
 
-/// Returns the angles `apart` (those of the body less those of the coupler) that are given, each with its place and on the
-/// turn that is nearest to their mean direction, and that direction.
-fn about_their_middle(apart: &[Option<f64>], weights: &[f64]) -> (f64, Vec<(usize, f64)>) {
-    let given = || apart.iter().enumerate().filter_map(|(j, apart)| Some((j, (*apart)?)));
-    let middle = given().map(|(j, apart)| Complex::from_polar(weights[j], apart)).sum::<Complex>().arg();
-    (middle, given().map(|(j, apart)| (j, wrapped(apart - middle))).collect())
+/// Returns the mean direction of the angles `apart`, those of the body less those of the coupler.
+fn mean_direction(apart: &[Option<f64>], weights: &[f64]) -> f64 {
+    let given = apart.iter().zip(weights).filter_map(|(apart, weight)| Some(((*apart)?, *weight)));
+    given.map(|(apart, weight)| Complex::from_polar(weight, apart)).sum::<Complex>().arg()
 }
 
 /// Returns the frame for which the weighted sum of squared angle errors is least: the mean of the angles `apart`, each on
 /// the turn that is nearest to their mean direction.
 pub fn best_frame(apart: &[Option<f64>], weights: &[f64]) -> f64 {
-    let (middle, given) = about_their_middle(apart, weights);
-    let total: f64 = given.iter().map(|(j, _)| weights[*j]).sum();
-    let off: f64 = given.iter().map(|(j, apart)| weights[*j] * apart).sum();
+    let middle = mean_direction(apart, weights);
+    let given = || apart.iter().zip(weights).filter_map(|(apart, weight)| Some(((*apart)?, *weight)));
+    let total: f64 = given().map(|(_, weight)| weight).sum();
+    let off: f64 = given().map(|(apart, weight)| weight * wrapped(apart - middle)).sum();
     wrapped(middle + off / total)
 }
 
@@ -91,7 +90,11 @@ impl Body {
     ///
     /// With a_j apart and tolerances t_j the least largest error is the greatest (a_i - a_j) / (t_i + t_j).
     pub fn frame_within(&self, apart: &[Option<f64>], weights: &[f64], largest: bool) -> f64 {
-        let (middle, given) = about_their_middle(apart, weights);
+        let middle = mean_direction(apart, weights);
+        // Each with its place, on the turn that is nearest to that direction.
+        let given = apart.iter().enumerate();
+        let given: Vec<(usize, f64)> =
+            given.filter_map(|(j, apart)| Some((j, wrapped((*apart)? - middle)))).collect();
         let tolerance =
             |j: usize| self.tolerances.as_ref().map_or(1.0, |tolerances| tolerances[j].max(SMALLEST_SIZE));
         let (mut least, mut nearest) = (0.0, given.first().map_or(0.0, |(_, apart)| *apart));

@@ -86,7 +86,7 @@ pub struct ProjectedFit<'a> {
     /// The columns sqrt(w) m_x.
     moved: [Column; UNKNOWNS],
     /// The errors of the body's angle, in radians; empty for a path.
-    turned_off: Vec<Option<f64>>,
+    angle_errors: Vec<Option<f64>>,
     linear: Option<Linear>,
 }
 
@@ -105,7 +105,7 @@ impl<'a> ProjectedFit<'a> {
             a_off: column(),
             rest: column(),
             moved: [column(), column(), column(), column()],
-            turned_off: Vec::new(),
+            angle_errors: Vec::with_capacity(form.body.as_ref().map_or(0, |body| body.angle.len())),
             linear: None,
         }
     }
@@ -359,19 +359,22 @@ impl<'a> ProjectedFit<'a> {
 
 impl ProjectedFit<'_> {
     /// Computes the errors of the body's angle at the positions; returns their part of the cost, over the weights' sum.
-    fn turned(&mut self, body: &BodyColumns) -> f64 {
+    fn measure_angles(&mut self, body: &BodyColumns) -> f64 {
         let (u, weights) = (&self.u, &self.form.columns.weight);
-        let apart = body.angle.iter().enumerate();
-        let apart: Vec<Option<f64>> =
-            apart.map(|(j, angle)| angle.map(|angle| angle - u[1][j].atan2(u[0][j]))).collect();
-        let frame = best_frame(&apart, weights);
-        self.turned_off = apart.iter().map(|apart| apart.map(|apart| wrapped(apart - frame))).collect();
-        let off = self.turned_off.iter().zip(weights);
-        body.length * body.length * off.map(|(off, w)| w * off.unwrap_or(0.0).powi(2)).sum::<f64>()
+        let apart = |(j, angle): (usize, &Option<f64>)| angle.map(|angle| angle - u[1][j].atan2(u[0][j]));
+        self.angle_errors.clear();
+        self.angle_errors.extend(body.angle.iter().enumerate().map(apart));
+        let frame = best_frame(&self.angle_errors, weights);
+        let mut cost = 0.0;
+        for (error, weight) in self.angle_errors.iter_mut().zip(weights) {
+            *error = error.map(|apart| wrapped(apart - frame));
+            cost += weight * error.unwrap_or(0.0).powi(2);
+        }
+        body.length * body.length * cost
     }
 
     /// Adds the rows of the body's angle to J^T J and J^T r.
-    fn add_turned(&self, body: &BodyColumns, at: &Linear, normal: &mut Normal<UNKNOWNS>) {
+    fn add_angle_rows(&self, body: &BodyColumns, at: &Linear, normal: &mut Normal<UNKNOWNS>) {
         let form = self.form;
         let [p, q, r] = at.ratio;
         let sense = match form.role {
@@ -386,19 +389,19 @@ impl ProjectedFit<'_> {
             [by * p * dot(v, e), by * q * dot(v, u), -by * r * r, by * p * dot(v, turned(e)) * sense]
         };
         let given = || {
-            let off = self.turned_off.iter().zip(&form.columns.weight).enumerate();
-            off.filter_map(|(j, (off, weight))| Some((swing(j), (*off)?, *weight)))
+            let errors = self.angle_errors.iter().zip(&form.columns.weight).enumerate();
+            errors.filter_map(|(j, (error, weight))| Some((swing(j), (*error)?, *weight)))
         };
         let mut mean = [0.0; UNKNOWNS];
         for (swing, _, weight) in given() {
             (0..UNKNOWNS).for_each(|x| mean[x] += swing[x] * weight / body.weight);
         }
         let scale = form.total_weight * body.length * body.length;
-        for (swing, off, weight) in given() {
+        for (swing, error, weight) in given() {
             let row: [f64; UNKNOWNS] = from_fn(|x| swing[x] - mean[x]);
             for x in 0..UNKNOWNS {
                 (0..UNKNOWNS).for_each(|y| normal.matrix[x][y] += scale * weight * row[x] * row[y]);
-                normal.gradient[x] -= scale * weight * row[x] * off;
+                normal.gradient[x] -= scale * weight * row[x] * error;
             }
         }
     }
@@ -446,7 +449,7 @@ impl CompactLeastSquares<UNKNOWNS> for ProjectedFit<'_> {
             || self.project(ratio, turn, direction),
         )?;
         let form = self.form;
-        let cost = form.body.as_ref().map_or(cost, |body| cost + self.turned(body));
+        let cost = form.body.as_ref().map_or(cost, |body| cost + self.measure_angles(body));
         Some(cost * weight)
     }
 
@@ -459,7 +462,7 @@ impl CompactLeastSquares<UNKNOWNS> for ProjectedFit<'_> {
             || self.linearised(&linear),
         );
         if let Some(body) = &self.form.body {
-            self.add_turned(body, &linear, &mut normal);
+            self.add_angle_rows(body, &linear, &mut normal);
         }
         normal
     }
