@@ -89,7 +89,7 @@ pub struct ProblemResult {
     pub source: Option<String>,
     /// The number of target points; of a motion, the number of poses and places.
     pub points: usize,
-    /// What its answers are compared with.
+    /// The figure that its answers are compared with.
     #[serde(flatten)]
     pub known: Known,
     /// The results of the method that the file asks for, from every seed.

@@ -4,7 +4,7 @@ use super::arguments::Suite as Asked;
 use super::output::Output;
 use super::progress::Shown;
 use super::{Ended, interrupt, refuse, refuse_at, refuse_io, terminal};
-use crate::app::suite::choice::{NoProblems, chosen, collection};
+use crate::app::suite::choice::{LITERATURE, NoProblems, chosen, collection};
 use crate::app::suite::{Options, Step, suite};
 use crate::files::generator::FileKind;
 use crate::files::problem_file::ProblemFile;
@@ -18,8 +18,6 @@ use std::path::{Path, PathBuf};
 const PROBLEMS: &str = "problems/literature";
 /// The folder of the page and its JSON.
 const RESULTS: &str = "results";
-/// The name of the literature's page and of its JSON; those of another folder bear its name.
-const LITERATURE: &str = "literature";
 
 /// Runs the command.
 pub fn run(asked: &Asked) -> Result<Ended, Ended> {

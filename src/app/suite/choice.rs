@@ -90,7 +90,7 @@ fn is_known((_, problem): &(String, ProblemFile)) -> bool {
 }
 
 /// The name of the folder of the literature's problems.
-const LITERATURE: &str = "literature";
+pub const LITERATURE: &str = "literature";
 
 /// Returns the name of a folder of problems, which a suite and its files bear; `None` for the literature's.
 pub fn collection(folder: &Path) -> Option<String> {
