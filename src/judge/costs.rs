@@ -20,10 +20,11 @@ use crate::numbers::optimise::nonnegative::nonnegative_least_squares;
 use crate::record::{Candidate, Cost, LimitUnit};
 use crate::task::Problem;
 use crate::task::forms::design_space::{DESIGN, Derived, DesignSpace, Shape};
+use crate::task::forms::fits::{FitUser, on_fit, own_frame};
 use crate::task::forms::rows::{Motion, RowKind, Side};
 use crate::task::forms::start::Start;
-use crate::task::forms::timed::{TimedMotionFit, TimedPathFit};
-use crate::task::forms::torus::{MotionFit, PathFit};
+use crate::task::forms::timed::TimedPathFit;
+use crate::task::forms::torus::{PathFit, Positions};
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::Objective;
 
@@ -80,21 +81,30 @@ pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
     let space = problem.space(start.setting.side);
     let Some(shape) = space.shape(&start.design) else { return Vec::new() };
     let at = At { problem, candidate, start: &start, space: &space, shape: &shape };
-    let (setting, positions, design) = (start.setting, &start.positions, &start.design);
-    let body = problem.task().body();
-    if positions.is_empty() {
+    let (setting, positions) = (start.setting, &start.positions);
+    let motion = if positions.is_empty() {
         let Some(fit) = TimedPathFit::new(problem, setting) else { return Vec::new() };
-        let motion = fit.motion(design, &shape);
-        if body.is_none() {
-            return at.costs(&fit, design, positions, &motion);
-        }
-        let Some(fit) = TimedMotionFit::new(problem, setting) else { return Vec::new() };
-        return at.costs(&fit, &fit.unknowns(design), positions, &motion);
-    }
-    let motion = PathFit::new(problem, setting).motion(&shape, positions);
-    match body {
-        None => at.costs(&PathFit::new(problem, setting), design, positions, &motion),
-        Some(_) => at.costs(&MotionFit::new(problem, setting), design, positions, &motion),
+        fit.motion(&start.design, &shape)
+    } else {
+        PathFit::new(problem, setting).motion(&shape, positions)
+    };
+    on_fit(problem, &start, false, Pricing { at: &at, motion: &motion }).unwrap_or_default()
+}
+
+/// Computes the costs of the active limits at a candidate over a motion.
+struct Pricing<'a> {
+    at: &'a At<'a>,
+    motion: &'a Motion<'a>,
+}
+
+impl FitUser for Pricing<'_> {
+    type Output = Vec<Cost>;
+
+    fn on<const N: usize, const R: usize, F>(self, fit: &F, x: [f64; N]) -> Vec<Cost>
+    where
+        F: BlockLeastSquares<N, R, State = Positions>,
+    {
+        self.at.costs(fit, &x, &self.at.start.positions, self.motion)
     }
 }
 
@@ -122,7 +132,7 @@ impl At<'_> {
         let free_timing = !self.start.positions.is_empty();
         let mut kinds = Vec::new();
         let own = self.problem.frame_is_free().then(|| space.offset(&self.start.design));
-        let frame = own.or(x.get(DESIGN).copied());
+        let frame = own.or(own_frame(x));
         let requirements = self.problem.requirements(space);
         requirements.rows(self.start.setting.aim, self.shape, motion, frame, &mut |row| {
             kinds.push((row.kind, free_timing && row.by_turn().abs() > MOVED_BY_POINTS * size));

@@ -6,16 +6,17 @@
 //! normal to it counts. Fixed derived quantities (a ground of a given length between free pivots) are equations too;
 //! inequality limits do not reduce the dimension.
 
-use super::rank::exact_sum_sq;
+use super::rank::is_exact;
 use super::warm::start_at;
 use crate::mechanism::{Complex, turned};
 use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, PointBlock};
 use crate::record::{Candidate, Family};
 use crate::task::Problem;
-use crate::task::forms::design_space::{DESIGN, Derived, DesignSpace, SHAPE, Shape, unit};
-use crate::task::forms::timed::{TimedMotionFit, TimedPathFit, WITH_FRAME};
-use crate::task::forms::torus::{MotionFit, PathFit, Positions};
+use crate::task::forms::design_space::{DESIGN, Derived, Design, DesignSpace, SHAPE, Shape, unit};
+use crate::task::forms::fits::{FitUser, on_fit, own_frame};
+use crate::task::forms::torus::Positions;
 use nalgebra::{DMatrix, SMatrix};
+use std::array::from_fn;
 
 /// The part of the largest singular value below which a singular value counts as zero: an exact answer is known to
 /// about 1e-12 of the linkage, which moves the singular values by as much.
@@ -23,7 +24,7 @@ pub const RANK_TOLERANCE: f64 = 1e-8;
 
 /// Returns the family that an exact accepted answer belongs to; `None` if it is isolated or not exact.
 pub fn family(problem: &Problem, best: &Candidate) -> Option<Family> {
-    if !best.accepted || best.error.sum_sq > exact_sum_sq(problem) {
+    if !best.accepted || !is_exact(problem, best) {
         return None;
     }
     let dimension = dimension(problem, best).filter(|dimension| *dimension > 0)?;
@@ -35,23 +36,7 @@ pub fn family(problem: &Problem, best: &Candidate) -> Option<Family> {
 /// Returns the number of free unknowns less the rank of the points' derivatives by them; `None` if these do not exist.
 pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     let start = start_at(problem, candidate)?;
-    let mut rows: Vec<[f64; DESIGN]> = Vec::new();
-    if start.positions.is_empty() {
-        let (setting, positions) = (start.setting, &start.positions);
-        match problem.task().body() {
-            None => linearised(&TimedPathFit::new(problem, setting)?, &start.design, positions, &mut rows)?,
-            Some(_) => {
-                let fit = TimedMotionFit::new(problem, setting)?;
-                centred(&fit, &fit.unknowns(&start.design), positions, &mut rows)?;
-            }
-        }
-    } else {
-        let (design, positions) = (&start.design, &start.positions);
-        match problem.task().body() {
-            None => linearised(&PathFit::new(problem, start.setting), design, positions, &mut rows)?,
-            Some(_) => linearised(&MotionFit::new(problem, start.setting), design, positions, &mut rows)?,
-        }
-    }
+    let mut rows = on_fit(problem, &start, false, Derivatives { positions: &start.positions })??;
     let space = problem.space(start.setting.side);
     let shape = space.shape(&start.design)?;
     for bound in space.derived().iter().filter(|bound| bound.limits.is_fixed()) {
@@ -61,51 +46,45 @@ pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     Some(free.len() - rank(&space, &shape, &rows, &free))
 }
 
-/// Adds the rows of all targets' derivatives with prescribed timing; the frame of the body is eliminated, which leaves the
-/// angles' rows less their mean.
-fn centred(
-    fit: &TimedMotionFit<'_>,
-    x: &[f64; WITH_FRAME],
-    positions: &Positions,
-    rows: &mut Vec<[f64; DESIGN]>,
-) -> Option<()> {
-    let mut angles: Vec<[f64; DESIGN]> = Vec::new();
-    let exists = fit.linearise(x, positions, &mut |block: &PointBlock<WITH_FRAME, 3>| {
-        let [of_x, of_y, of_angle] = &block.jacobian;
-        rows.extend([of_x, of_y].map(TimedMotionFit::design));
-        if of_angle[DESIGN] != 0.0 {
-            angles.push(TimedMotionFit::design(of_angle));
-        }
-    });
-    let n = angles.len() as f64;
-    let mean: [f64; DESIGN] = std::array::from_fn(|i| angles.iter().map(|row| row[i]).sum::<f64>() / n);
-    rows.extend(angles.iter().map(|row| std::array::from_fn(|i| row[i] - mean[i])));
-    exists.then_some(())
+/// Computes the rows of all targets' derivatives by the design, normal to their own tangents; `None` if one does not exist.
+struct Derivatives<'a> {
+    positions: &'a Positions,
 }
 
-/// Adds the rows of all points' derivatives, normal to their own tangents; `None` if one does not exist.
-fn linearised<const R: usize, P: BlockLeastSquares<DESIGN, R>>(
-    fit: &P,
-    x: &[f64; DESIGN],
-    state: &P::State,
-    rows: &mut Vec<[f64; DESIGN]>,
-) -> Option<()> {
-    let exists = fit.linearise(x, state, &mut |block: &PointBlock<DESIGN, R>| {
-        let (t, j) = (&block.tangent, &block.jacobian);
-        let length = t.iter().map(|t| t * t).sum::<f64>().sqrt();
-        if length == 0.0 {
-            rows.extend(j);
-        } else if R == 2 {
-            rows.push(std::array::from_fn(|i| (t[0] * j[1][i] - t[1] * j[0][i]) / length));
-        } else {
-            // All rows less their part along the tangent: one more than independent ones.
-            let along: [f64; DESIGN] = std::array::from_fn(|i| {
-                t.iter().zip(j).map(|(t, row)| t * row[i]).sum::<f64>() / (length * length)
-            });
-            rows.extend(t.iter().zip(j).map(|(t, row)| std::array::from_fn(|i| row[i] - t * along[i])));
-        }
-    });
-    exists.then_some(())
+impl FitUser for Derivatives<'_> {
+    type Output = Option<Vec<Design>>;
+
+    fn on<const N: usize, const R: usize, F>(self, fit: &F, x: [f64; N]) -> Self::Output
+    where
+        F: BlockLeastSquares<N, R, State = Positions>,
+    {
+        let mut rows: Vec<[f64; N]> = Vec::new();
+        let exists = fit.linearise(&x, self.positions, &mut |block: &PointBlock<N, R>| {
+            let (t, j) = (&block.tangent, &block.jacobian);
+            let length = t.iter().map(|t| t * t).sum::<f64>().sqrt();
+            if length == 0.0 {
+                rows.extend(j);
+            } else if R == 2 {
+                rows.push(from_fn(|i| (t[0] * j[1][i] - t[1] * j[0][i]) / length));
+            } else {
+                // All rows less their part along the tangent: one more than independent ones.
+                let along: [f64; N] =
+                    from_fn(|i| t.iter().zip(j).map(|(t, row)| t * row[i]).sum::<f64>() / (length * length));
+                rows.extend(t.iter().zip(j).map(|(t, row)| from_fn(|i| row[i] - t * along[i])));
+            }
+        });
+        exists.then(|| without_frame(&rows))
+    }
+}
+
+/// Returns the rows by the design alone. A frame of its own among the unknowns is at its best, which leaves the rows that
+/// depend on it less their mean.
+fn without_frame<const N: usize>(rows: &[[f64; N]]) -> Vec<Design> {
+    let by_frame = |row: &[f64; N]| own_frame(row).unwrap_or(0.0);
+    let sq: f64 = rows.iter().map(|row| by_frame(row).powi(2)).sum();
+    let mean: Design =
+        from_fn(|i| rows.iter().map(|row| row[i] * by_frame(row)).sum::<f64>() / sq.max(f64::MIN_POSITIVE));
+    rows.iter().map(|row| from_fn(|i| row[i] - mean[i] * by_frame(row))).collect()
 }
 
 fn rank(space: &DesignSpace, shape: &Shape, rows: &[[f64; DESIGN]], free: &[usize]) -> usize {

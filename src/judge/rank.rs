@@ -45,10 +45,15 @@ pub fn exact_sum_sq(problem: &Problem) -> f64 {
     exact_mean_sq(problem) * problem.task().len() as f64 * problem.task().size().powi(2)
 }
 
+/// Returns whether a candidate meets all targets exactly, in a motion the body's angles too.
+pub fn is_exact(problem: &Problem, candidate: &Candidate) -> bool {
+    candidate.error.sum_sq <= exact_sum_sq(problem)
+        && (problem.task().body().is_none() || searched(problem, candidate) <= exact_cost(problem))
+}
+
 /// Returns whether an accepted candidate of a list is exact: the target is reached.
 pub fn holds_an_exact(problem: &Problem, candidates: &[Candidate]) -> bool {
-    let exact = exact_sum_sq(problem);
-    candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact)
+    candidates.iter().any(|c| c.accepted && is_exact(problem, c))
 }
 
 /// Returns the weighted sum of squares below which a fit is exact.

@@ -13,7 +13,7 @@
 
 use super::states::SearchState;
 use super::{Context, HitsSoFar, Progress};
-use crate::judge::rank::{count_distinct, exact_sum_sq};
+use crate::judge::rank::{count_distinct, is_exact};
 use crate::record::{Candidate, Evaluations, Reason, Repeats};
 use rayon::prelude::*;
 
@@ -151,8 +151,7 @@ pub(super) fn drive<S: Strategy>(context: Context<'_>, allowance: Allowance, sea
             hits,
             ..Progress::of(S::PHASE, used, limit)
         });
-        let (is_none, is_exact) =
-            (best.is_none(), best.is_some_and(|b| b.error.sum_sq <= exact_sum_sq(context.problem)));
+        let (is_none, is_exact) = (best.is_none(), best.is_some_and(|best| is_exact(context.problem, best)));
         if search.is_done(context) {
             return if is_exact { Reason::TargetReached } else { Reason::Converged };
         }

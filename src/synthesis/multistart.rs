@@ -18,14 +18,13 @@ use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::FourBar;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::numbers::arithmetic::streams::stream;
-use crate::numbers::optimise::levenberg_marquardt::{
-    BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve,
-};
+use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, solve};
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Evaluations};
-use crate::task::forms::design_space::{DESIGN, Design};
+use crate::task::forms::design_space::Design;
+use crate::task::forms::fits::{FitUser, design_of, on_fit};
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
-use crate::task::forms::timed::{TimedFit, TimedMotionFit, TimedPathFit};
+use crate::task::forms::timed::TimedPathFit;
 use crate::task::forms::torus::{MotionFit, PathFit, Positions};
 use crate::task::spec::Objective;
 use crate::task::{AngleOffset, Problem, Setting, Timing};
@@ -179,39 +178,32 @@ pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     let task = problem.task();
     let weight: f64 = task.weights().iter().sum();
     let scale = weight * task.size().powi(2);
-    if start.positions.is_empty() {
-        let (cost, lack) = match problem.task().body() {
-            None => timed_promise(&TimedPathFit::new(problem, start.setting)?, start)?,
-            Some(_) => timed_promise(&TimedMotionFit::new(problem, start.setting)?, start)?,
-        };
-        return Some(cost + scale * lack * lack);
-    }
-    let fit = PathFit::new(problem, start.setting);
-    if !fit.settle(&start.design, &mut start.positions) {
+    let held = &mut start.positions;
+    if !held.is_empty() && !PathFit::new(problem, start.setting).settle(&start.design, held) {
         return None;
     }
-    let cost = match problem.task().body() {
-        None => fit.cost(&start.design, &start.positions)?,
-        Some(_) => MotionFit::new(problem, start.setting).cost(&start.design, &start.positions)?,
-    };
-    let shape = fit.space().shape(&start.design)?;
-    let motion = fit.motion(&shape, &start.positions);
-    let frame = problem.frame_is_free().then(|| fit.space().offset(&start.design));
-    let lack = fit.requirements().lack(start.setting.aim, &shape, &motion, frame);
+    let (cost, lack) = on_fit(problem, start, false, Screening { positions: &start.positions })??;
+    let lack = lack / task.size();
     Some(cost + scale * lack * lack)
 }
 
-/// Returns the cost of a start of prescribed timing, and its violation of the requirements.
-fn timed_promise<const N: usize, const R: usize>(
-    fit: &TimedFit<'_, N, R>,
-    start: &Start,
-) -> Option<(f64, f64)> {
-    let unknowns = fit.unknowns(&start.design);
-    let cost = fit.cost(&unknowns, &start.positions)?;
-    let shape = fit.space().shape(&start.design)?;
-    let motion = fit.motion(&start.design, &shape);
-    let frame = unknowns.get(DESIGN).copied();
-    Some((cost, fit.requirements().lack(start.setting.aim, &shape, &motion, frame)))
+/// Computes the cost of a start and the total violation of its requirements, a length; `None` if it has no cost.
+struct Screening<'a> {
+    positions: &'a Positions,
+}
+
+impl FitUser for Screening<'_> {
+    type Output = Option<(f64, f64)>;
+
+    fn on<const N: usize, const R: usize, F>(self, fit: &F, x: [f64; N]) -> Self::Output
+    where
+        F: BlockLeastSquares<N, R, State = Positions>,
+    {
+        let cost = fit.cost(&x, self.positions)?;
+        let mut lack = 0.0;
+        fit.constraints(&x, self.positions, &mut |value, _| lack += (-value).max(0.0));
+        Some((cost, lack))
+    }
 }
 
 /// The end of a local fit.
@@ -250,41 +242,36 @@ pub(super) fn polish_until(
 }
 
 fn fit_with(context: Context<'_>, start: Start, options: &LmOptions) -> Fitted {
-    let problem = context.problem;
-    let stop = || context.stopped();
-    let Start { design, setting, positions } = start;
-    let result = match (positions.is_empty(), problem.task().body()) {
-        (true, None) => {
-            let Some(fit) = TimedPathFit::new(problem, setting) else { return Fitted::NONE };
-            solve(&fit, design, positions, options, &stop)
+    on_fit(context.problem, &start, true, Fitting { context, start: &start, options }).unwrap_or(Fitted::NONE)
+}
+
+/// Fits from a start by Levenberg-Marquardt.
+struct Fitting<'a> {
+    context: Context<'a>,
+    start: &'a Start,
+    options: &'a LmOptions,
+}
+
+impl FitUser for Fitting<'_> {
+    type Output = Fitted;
+
+    fn on<const N: usize, const R: usize, F>(self, fit: &F, x: [f64; N]) -> Fitted
+    where
+        F: BlockLeastSquares<N, R, State = Positions>,
+    {
+        let Fitting { context, start, options } = self;
+        let end = solve(fit, x, start.positions.clone(), options, &|| context.stopped());
+        let usable = !matches!(end.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
+        let weight: f64 = context.problem.task().weights().iter().sum();
+        Fitted {
+            merit: end.cost + weight * end.violation * end.violation,
+            evaluations: end.evaluations,
+            end: usable.then_some(Start {
+                design: design_of(&end.x),
+                setting: start.setting,
+                positions: end.state,
+            }),
         }
-        (true, Some(_)) => {
-            let Some(fit) = TimedMotionFit::new(problem, setting) else { return Fitted::NONE };
-            let end = solve(&fit, fit.unknowns(&design), positions, options, &stop);
-            LmResult {
-                x: TimedMotionFit::design(&end.x),
-                state: end.state,
-                cost: end.cost,
-                violation: end.violation,
-                evaluations: end.evaluations,
-                outcome: end.outcome,
-            }
-        }
-        (false, None) => {
-            let fit = PathFit::new(problem, setting).in_order(&design, &positions);
-            solve(&fit, design, positions, options, &stop)
-        }
-        (false, Some(_)) => {
-            let fit = MotionFit::new(problem, setting).in_order(&design, &positions);
-            solve(&fit, design, positions, options, &stop)
-        }
-    };
-    let usable = !matches!(result.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
-    let weight: f64 = problem.task().weights().iter().sum();
-    Fitted {
-        merit: result.cost + weight * result.violation * result.violation,
-        evaluations: result.evaluations,
-        end: usable.then_some(Start { design: result.x, setting, positions: result.state }),
     }
 }
 

@@ -14,15 +14,16 @@ use crate::judge::error::structural_error;
 use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
 use crate::judge::warm::start_at;
 use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
-use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, ConvexResult, Goal, solve};
+use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, Goal, solve};
+use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::record::{Candidate, Evaluations, Figure};
 use crate::task::Problem;
-use crate::task::forms::design_space::DESIGN;
+use crate::task::forms::fits::{FitUser, design_of, on_fit};
 use crate::task::forms::start::Start;
-use crate::task::forms::timed::{TimedMotionFit, TimedPathFit, WITH_FRAME};
-use crate::task::forms::torus::{MotionFit, PathFit};
+use crate::task::forms::torus::{PathFit, Positions};
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::Objective;
+use std::array::from_fn;
 
 /// The random stream of the first round of hops; those of a multistart count up from 0.
 const FIRST_HOP: u64 = 1 << 62;
@@ -115,24 +116,6 @@ pub fn finish(context: Context<'_>, start: &Start, evaluations: u64) -> Fitted {
     }
 }
 
-/// Returns the options of a fit with the first trust box `trust`, to a target of this size.
-fn options<const N: usize>(
-    trust: [f64; N],
-    size: f64,
-    good_enough: f64,
-    evaluations: u64,
-) -> ConvexOptions<N> {
-    ConvexOptions {
-        max_steps: STEPS,
-        max_evaluations: evaluations,
-        trust,
-        length: size,
-        relative_reduction: 1e-11,
-        feasibility: 1e-9 * size,
-        good_enough,
-    }
-}
-
 /// Fits by sequential convex programming; returns the end and its largest deviation.
 fn convex(
     context: Context<'_>,
@@ -141,59 +124,57 @@ fn convex(
     good_enough: f64,
     evaluations: u64,
 ) -> (Fitted, f64) {
-    let problem = context.problem;
-    let size = problem.task().size();
-    let trust = problem.space(start.setting.side).trust(size);
-    let options = options(trust, size, good_enough, evaluations);
-    let stop = || context.stopped();
-    let (setting, mut positions) = (start.setting, start.positions.clone());
-    let body = problem.task().body();
-    if !positions.is_empty() && !PathFit::new(problem, setting).settle(&start.design, &mut positions) {
-        return (Fitted::NONE, f64::INFINITY);
+    const NONE: (Fitted, f64) = (Fitted::NONE, f64::INFINITY);
+    let (problem, mut start) = (context.problem, start.clone());
+    let held = &mut start.positions;
+    if !held.is_empty() && !PathFit::new(problem, start.setting).settle(&start.design, held) {
+        return NONE;
     }
-    let result = match (positions.is_empty(), body) {
-        (true, None) => {
-            let Some(fit) = TimedPathFit::new(problem, setting) else {
-                return (Fitted::NONE, f64::INFINITY);
-            };
-            solve(&fit, goal, start.design, positions, &options, &stop)
-        }
-        (true, Some(_)) => {
-            let Some(fit) = TimedMotionFit::new(problem, setting) else {
-                return (Fitted::NONE, f64::INFINITY);
-            };
-            let mut reach = [FRAME_TRUST; WITH_FRAME];
-            reach[..DESIGN].copy_from_slice(&trust);
-            let options = self::options(reach, size, good_enough, evaluations);
-            let end = solve(&fit, goal, fit.unknowns(&start.design), positions, &options, &stop);
-            ConvexResult {
-                x: TimedMotionFit::design(&end.x),
-                state: end.state,
-                objective: end.objective,
-                deviation: end.deviation,
-                violation: end.violation,
-                evaluations: end.evaluations,
-                outcome: end.outcome,
-                multipliers: None,
-                steps: end.steps,
-            }
-        }
-        (false, None) => {
-            let fit = PathFit::new(problem, setting);
-            solve(&fit, goal, start.design, positions, &options, &stop)
-        }
-        (false, Some(_)) => {
-            let fit = MotionFit::new(problem, setting);
-            solve(&fit, goal, start.design, positions, &options, &stop)
-        }
-    };
-    let usable = !matches!(result.outcome, ConvexOutcome::NoStart | ConvexOutcome::Stopped);
-    let fitted = Fitted {
-        merit: result.objective + result.violation / size,
-        evaluations: result.evaluations,
-        end: usable.then_some(Start { design: result.x, setting, positions: result.state }),
-    };
-    (fitted, result.deviation)
+    let polishing = Polishing { context, start: &start, goal, good_enough, evaluations };
+    on_fit(problem, &start, false, polishing).unwrap_or(NONE)
+}
+
+/// Fits from a start by sequential convex programming.
+struct Polishing<'a> {
+    context: Context<'a>,
+    start: &'a Start,
+    goal: &'a Goal<'a>,
+    good_enough: f64,
+    evaluations: u64,
+}
+
+impl FitUser for Polishing<'_> {
+    type Output = (Fitted, f64);
+
+    fn on<const N: usize, const R: usize, F>(self, fit: &F, x: [f64; N]) -> (Fitted, f64)
+    where
+        F: BlockLeastSquares<N, R, State = Positions>,
+    {
+        let Polishing { context, start: Start { setting, positions, .. }, goal, .. } = self;
+        let size = context.problem.task().size();
+        let of_design = context.problem.space(setting.side).trust(size);
+        let options = ConvexOptions {
+            max_steps: STEPS,
+            max_evaluations: self.evaluations,
+            trust: from_fn(|i| of_design.get(i).copied().unwrap_or(FRAME_TRUST)),
+            length: size,
+            relative_reduction: 1e-11,
+            feasibility: 1e-9 * size,
+            good_enough: self.good_enough,
+        };
+        let end = solve(fit, goal, x, positions.clone(), &options, &|| context.stopped());
+        let usable = !matches!(end.outcome, ConvexOutcome::NoStart | ConvexOutcome::Stopped);
+        let fitted = Fitted {
+            merit: end.objective + end.violation / size,
+            evaluations: end.evaluations,
+            end: usable.then_some(Start {
+                design: design_of(&end.x),
+                setting: *setting,
+                positions: end.state,
+            }),
+        };
+        (fitted, end.deviation)
+    }
 }
 
 /// Returns whether a limit is active at a candidate: then the last digits are worth a polish.

@@ -37,7 +37,7 @@ use crate::mechanism::{AssemblyMode, Pose};
 use crate::numbers::arithmetic::streams::{Stream, below, stream, uniform};
 use crate::numbers::optimise::compact_lm::{CompactOptions, solve};
 use crate::record::{Candidate, Evaluations, Repeats};
-use crate::task::forms::design_space::DESIGN;
+use crate::task::forms::fits::own_frame;
 use crate::task::forms::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
 use crate::task::forms::rows::{Motion, Requirements, nearest_type};
 use crate::task::forms::start::Start;
@@ -369,8 +369,8 @@ impl<'a> Timed<'a> {
         let motion = Motion::Stretch(one.min(other), one.max(other), assembly);
         let start = Start { design: space.design(shape, *offset), setting, positions: Vec::new() };
         let pins = problem.spec().require.pins_in.as_ref();
-        let frame =
-            pins.and_then(|_| Some(TimedMotionFit::new(problem, setting)?.unknowns(&start.design)[DESIGN]));
+        let frame = pins
+            .and_then(|_| Some(own_frame(&TimedMotionFit::new(problem, setting)?.unknowns(&start.design))?));
         let lack = self.requirements.lack(aim, shape, &motion, frame);
         let outside = space.excess(shape) / problem.task().size();
         Some((start, outside + lack))

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`design_space`] | the design vector and its coordinates; only this file knows the meaning of each component |
 //! | [`fitness`] | fitness of a population search in the physical parameters: the design's free numbers in, violation and cost out |
+//! | [`fits`] | the least-squares fit that suits a start: of a path or of a motion, with prescribed or with free timing |
 //! | [`linear_fit`] | the linear part of a path fit, for starts: given the shape ratios and the positions, the pivots, the size and the coupler point follow from linear least squares |
 //! | [`precision`] | exact problems: paths of nine precision points with free timing |
 //! | [`projection`] | variable projection for prescribed timing (the reduced form): the linear parameters are solved for inside |
@@ -15,6 +16,7 @@
 
 pub mod design_space;
 pub mod fitness;
+pub mod fits;
 pub mod linear_fit;
 pub mod precision;
 pub mod projection;

@@ -9,6 +9,7 @@
 //! behind those of the design. The row is zero for a target without an angle.
 
 use super::design_space::{ChainRule, DESIGN, Design, DesignSpace, SHAPE, Shape, unit};
+use super::fits::{design_of, own_frame};
 use super::rows::{Motion, Requirements};
 use super::torus::{ANGLE_ROW, Positions, angle_residual};
 use crate::mechanism::effort::computed;
@@ -83,11 +84,6 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
             *frame = self.frame_of(design).unwrap_or(0.0);
         }
         x
-    }
-
-    /// Returns the design among the unknowns.
-    pub fn design(x: &[f64; N]) -> Design {
-        std::array::from_fn(|i| x[i])
     }
 
     /// Returns the frame of the body for which the weighted sum of squared angle errors is least.
@@ -178,7 +174,7 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
     }
 
     fn cost(&self, unknowns: &[f64; N], _: &Positions) -> Option<f64> {
-        let x = &Self::design(unknowns);
+        let x = &design_of(unknowns);
         let shape = self.space.shape(x)?;
         let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(x, &shape));
@@ -204,7 +200,7 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
     }
 
     fn linearise(&self, unknowns: &[f64; N], _: &Positions, each: &mut dyn FnMut(&PointBlock<N, R>)) -> bool {
-        let x = &Self::design(unknowns);
+        let x = &design_of(unknowns);
         let Some(shape) = self.space.shape(x) else { return false };
         let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(x, &shape));
@@ -257,10 +253,10 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
     }
 
     fn constraints(&self, unknowns: &[f64; N], _: &Positions, each: &mut EachConstraint<'_, N>) {
-        let x = &Self::design(unknowns);
+        let x = &design_of(unknowns);
         let Some(shape) = self.space.shape(x) else { return };
         let (rule, by_ground_angle) = (self.space.chain_rule(x, &shape), Self::by_ground_angle(&shape));
-        let frame = unknowns.get(DESIGN).copied();
+        let frame = own_frame(unknowns);
         self.requirements.rows(self.setting.aim, &shape, &self.motion(x, &shape), frame, &mut |row| {
             each(row.value, &|| {
                 let mut gradient = self.by_design(&rule, row.shape, row.by_turn(), by_ground_angle);

@@ -1,0 +1,54 @@
+//! The least-squares fit that suits a start: of a path or of a motion, with prescribed or with free timing.
+//!
+//! The four differ in their numbers of unknowns and of rows, which are types. So what is to be done with a fit is a
+//! [`FitUser`], and [`on_fit`] is the one place that tells the four apart.
+
+use super::design_space::{DESIGN, Design};
+use super::start::Start;
+use super::timed::{TimedMotionFit, TimedPathFit};
+use super::torus::{MotionFit, PathFit, Positions};
+use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
+use crate::task::Problem;
+
+/// A computation on a fit of any kind.
+pub trait FitUser {
+    /// The result.
+    type Output;
+
+    /// Computes with a fit at its unknowns `x`, of which the first are the design ([`design_of`]).
+    fn on<const N: usize, const R: usize, F>(self, fit: &F, x: [f64; N]) -> Self::Output
+    where
+        F: BlockLeastSquares<N, R, State = Positions>;
+}
+
+/// Returns the design among the unknowns of a fit.
+pub fn design_of<const N: usize>(x: &[f64; N]) -> Design {
+    std::array::from_fn(|i| x[i])
+}
+
+/// Returns the frame of the body among the unknowns of a fit to timed poses; `None` in other fits.
+pub fn own_frame<const N: usize>(x: &[f64; N]) -> Option<f64> {
+    x.get(DESIGN).copied()
+}
+
+/// Calls `user` with the fit of a problem at a start; `None` if the start has no positions and the timing is free.
+/// `ordered`: whether positions are held in their present order around the curve, if the problem requires an order.
+pub fn on_fit<U: FitUser>(problem: &Problem, start: &Start, ordered: bool, user: U) -> Option<U::Output> {
+    let Start { design, setting, positions } = start;
+    match (positions.is_empty(), problem.task().body()) {
+        (true, None) => Some(user.on(&TimedPathFit::new(problem, *setting)?, *design)),
+        (true, Some(_)) => {
+            let fit = TimedMotionFit::new(problem, *setting)?;
+            let x = fit.unknowns(design);
+            Some(user.on(&fit, x))
+        }
+        (false, None) => {
+            let fit = PathFit::new(problem, *setting);
+            Some(user.on(&if ordered { fit.in_order(design, positions) } else { fit }, *design))
+        }
+        (false, Some(_)) => {
+            let fit = MotionFit::new(problem, *setting);
+            Some(user.on(&if ordered { fit.in_order(design, positions) } else { fit }, *design))
+        }
+    }
+}
