@@ -369,8 +369,8 @@ impl<'a> Timed<'a> {
         let motion = Motion::Stretch(one.min(other), one.max(other), assembly);
         let start = Start { design: space.design(shape, *offset), setting, positions: Vec::new() };
         let pins = problem.spec().require.pins_in.as_ref();
-        let frame = pins
-            .and_then(|_| Some(own_frame(&TimedMotionFit::new(problem, setting)?.unknowns(&start.design))?));
+        let frame =
+            pins.and_then(|_| own_frame(&TimedMotionFit::new(problem, setting)?.unknowns(&start.design)));
         let lack = self.requirements.lack(aim, shape, &motion, frame);
         let outside = space.excess(shape) / problem.task().size();
         Some((start, outside + lack))
