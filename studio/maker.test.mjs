@@ -115,8 +115,8 @@ test("a machine says how it walks where it has a ground to walk on", async () =>
   const { page, said, context, end } = await begun(home);
   await doing(page, "done");
   const card = () => page.locator("#strip .pick").first().textContent();
-  const gait = /stride ([\d.]+) mm a turn, foot lifted ([\d.]+) mm, hips bob ([\d.]+) mm/;
-  const [, stride, lift, bob] = (await card()).match(gait).map(Number);
+  const gait = /steps ([\d.]+) mm, foot lifted ([\d.]+) mm, hips bob ([\d.]+) mm/;
+  const [, long, lift, bob] = (await card()).match(gait).map(Number);
   // As the curve on the board has it: two legs, half a turn apart, the lower foot on the ground.
   const drawn = await page.evaluate(() => {
     const d = document.querySelector("#board .figure:not(.absent, .second) .curve").getAttribute("d");
@@ -141,15 +141,15 @@ test("a machine says how it walks where it has a ground to walk on", async () =>
     (sum, foot, i) => (foot[1] < other(i)[1] ? sum + feet[(i + 1) % feet.length][0] - foot[0] : sum),
     0,
   );
-  near(stride, 2 * Math.abs(step));
-  assert.ok(stride <= 2 * scale * wide * 1.01);
+  near(long, Math.abs(step));
+  assert.ok(long <= scale * wide * 1.01);
   await page.getByLabel("two legs").uncheck();
-  assert.doesNotMatch(await card(), /stride/);
+  assert.doesNotMatch(await card(), /steps/);
   await page.getByLabel("two legs").check();
   assert.match(await card(), gait);
   await example(page, 2);
   await doing(page, "done");
-  assert.doesNotMatch(await card(), /stride/);
+  assert.doesNotMatch(await card(), /steps/);
   assert.deepEqual(said, []);
   await context.close();
   await end();

@@ -11,7 +11,7 @@ const SIZES: [string, string, string][] = [
   ["thickness_mm", "Thickness", "¾ of hole"],
   ["hole_mm", "Holes", "4"],
   ["motor_hole_mm", "Motor's shaft at A", "as holes"],
-  ["boss_hole_mm", "Motor's boss at A", "as shaft"],
+  ["boss_hole_mm", "Frame's hole at A", "as shaft"],
   ["margin_mm", "Material around a hole", "as hole"],
   ["kerf_mm", "Kerf of the tool", "0"],
 ];

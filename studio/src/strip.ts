@@ -116,14 +116,15 @@ class Card {
     };
     const limited = limitedBy(shown, limits);
     const exact = shown.ability !== undefined || isExact(shown);
+    const extent = few ? extentOf(moving) : undefined;
+    const strays = few && task.closed && !exact ? strayInWords(moving, task.points, size) : [];
     const graded: Graded[] = [
       ...(exact ? [] : [nearnessInWords(shown, size)]),
+      ...strays,
       transmissionInWords(shown.transmission_deg),
     ];
-    const extent = few ? extentOf(moving) : undefined;
-    const strays = few && task.closed && !exact ? strayInWords(moving, task.points, size) : "";
     const gait = few && isWalker && moving.cycle.cyclic ? gaitInWords(moving.curve, unit) : "";
-    const plain = [sizeInWords(shown.linkage, size, extent), gait, strays, limited].filter((text) => text !== "");
+    const plain = [sizeInWords(shown.linkage, size, extent), gait, limited].filter((text) => text !== "");
     // Figures of another path are told as such, and praise nothing.
     const aside = (text: string) => element("span", {}, [elsewhere ? text.replace("the path", "its path") : text]);
     const key = JSON.stringify([elsewhere, texts, graded, plain, marks, shown.accepted, chosen, pinned, isKept]);

@@ -62,7 +62,7 @@ const STRAYS = 0.15;
 const EVERY = 8;
 
 /** Says that the curve of a linkage leaves a closed path on its way, where it does: between the points nothing is asked. */
-export function strayInWords(moving: { curve: (Point | null)[] }, points: Point[], size: number): string {
+export function strayInWords(moving: { curve: (Point | null)[] }, points: Point[], size: number): Graded[] {
   const along = points.map((p, i): [Point, Point] => [p, points[(i + 1) % points.length]]);
   const far = ([x, y]: Point) =>
     Math.min(
@@ -74,7 +74,8 @@ export function strayInWords(moving: { curve: (Point | null)[] }, points: Point[
     );
   const looked = moving.curve.filter((p, i): p is Point => p !== null && i % EVERY === 0);
   const most = Math.max(0, ...looked.map(far));
-  return most > STRAYS * size ? `its curve leaves the path by ${Math.round((100 * most) / size)} %` : "";
+  if (most <= STRAYS * size) return [];
+  return [{ grade: "poor", text: `its curve leaves the path by ${Math.round((100 * most) / size)} %` }];
 }
 
 /** How a machine walks on two legs half a turn apart, of the curve of a foot over a turn: the lower foot carries, and the
@@ -92,10 +93,9 @@ export function gaitInWords(curve: (Point | null)[], unit?: string): string {
     lifts.push(foot[1] - other[1]);
     if (foot[1] < other[1]) step += next[0] - foot[0];
   }
-  // Each foot makes a step in a turn.
-  const figures = [2 * Math.abs(step), Math.max(...lifts), Math.max(...ground) - Math.min(...ground)];
-  const [stride, lift, bob] = figures.map((length) => figure(length, 3) + unitAfter(unit));
-  return `stride ${stride} a turn, foot lifted ${lift}, hips bob ${bob}`;
+  const figures = [Math.abs(step), Math.max(...lifts), Math.max(...ground) - Math.min(...ground)];
+  const [long, lift, bob] = figures.map((length) => figure(length, 3) + unitAfter(unit));
+  return `steps ${long}, foot lifted ${lift}, hips bob ${bob}`;
 }
 
 /** The limit on which a linkage lies, in words; empty if on none. */
