@@ -1,4 +1,5 @@
-//! linkwright finds the four-bar linkage whose coupler point draws the path you ask for.
+//! linkwright finds the four-bar linkage whose coupler point draws the path you ask for, which takes a body through poses, or
+//! which turns one angle into another.
 //!
 //! ```text
 //!                    P                given: points T_1 .. T_n (and, if you like, the crank angle at each)

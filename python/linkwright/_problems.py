@@ -165,7 +165,7 @@ def function(
 
     Args:
         input_deg: how far the crank has turned, degrees, shape (n,).
-        output_deg: how far the output has turned, degrees, shape (n,); or `output`: a slider's places, lengths.
+        output_deg: how far the follower has turned, degrees, shape (n,). (`output`, a slider's places, is still to come.)
         of, over, input_range_deg, output_range_deg, samples: a formula such as ``"log10(x)"`` in place of a table.
         file: a CSV file in place of a table.
         input_offset, output_offset: ``"free"`` or ``"ground"``.
@@ -174,7 +174,13 @@ def function(
         design, require, solve, name, source, unit: as for :func:`path`.
 
     Raises:
-        ProblemError: a value is refused, or this version of linkwright has no such task.
+        ProblemError: a value is refused, or this version of linkwright has no such key.
+
+    >>> import linkwright as lw
+    >>> problem = lw.function(of="x^2", over=[0, 1], input_range_deg=90, output_range_deg=90, sense="same")
+    >>> best = lw.synth(problem).candidates[0]
+    >>> round(best.error["output"]["rms_deg"], 4)
+    0.0425
     """
     task = {
         "input_deg": input_deg, "output_deg": output_deg, "output": output, "of": of, "over": over,

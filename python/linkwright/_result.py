@@ -24,7 +24,8 @@ class Candidate:
 
     Any key of a candidate in the record is an attribute: ``error``, ``type``, ``transmission_deg``, ``accepted``,
     ``warnings``, ``requirements``, ``crank_deg``, ``t1_at``, ``link_ratio``, ``grashof_margin``, ``defects``, ..; of a
-    motion ``frame_deg`` too, the angle from C -> D to the body's x axis.
+    motion ``frame_deg`` too, the angle from C -> D to the body's x axis; of a function ``input_offset_deg``,
+    ``output_offset_deg`` (the angles of crank and follower from the line A -> B at an input and an output of 0) and ``sense``.
     """
 
     __slots__ = ("data", "result", "which")

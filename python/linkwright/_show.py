@@ -49,9 +49,20 @@ def _axes(ax: Any) -> Any:
 
 
 def _target(candidate: Candidate) -> Any:
+    """The places of the targets, shape (n, 2); those of the follower's pin in a function."""
     import numpy as np
 
-    return np.asarray(candidate.result.record["problem"]["resolved"]["task"]["path"]["points"], dtype=float)
+    task = candidate.result.record["problem"]["resolved"]["task"]
+    if "function" in task:
+        linkage = candidate.linkage
+        (ax, ay), (bx, by) = linkage.A, linkage.B
+        sign = -1 if candidate.sense == "opposite" else 1
+        ground = np.degrees(np.arctan2(by - ay, bx - ax))
+        outputs = np.asarray(task["function"]["output_deg"], dtype=float)
+        psi = np.radians(ground + candidate.output_offset_deg + sign * outputs)
+        return np.stack([bx + linkage.c * np.cos(psi), by + linkage.c * np.sin(psi)], axis=-1)
+    places = task["path"]["points"] if "path" in task else [pose[:2] for pose in task["motion"]["poses"]]
+    return np.asarray(places, dtype=float)
 
 
 def _first_angle(candidate: Candidate) -> float:

@@ -114,7 +114,7 @@ impl Problem {
         self.file.unit.map(|unit| unit.label())
     }
 
-    /// Returns the points of the target.
+    /// Returns the points of the target; none of a function.
     fn points(&self) -> Vec<[f64; 2]> {
         self.file.spec.task.points.clone()
     }
@@ -131,7 +131,7 @@ impl Problem {
         self.file.expect.as_ref()?.best_known_sum_sq
     }
 
-    /// The least objective known, of a motion that states it.
+    /// The least objective known, of a motion or a function that states it.
     #[getter]
     fn best_known_objective(&self) -> Option<f64> {
         self.file.expect.as_ref()?.objective

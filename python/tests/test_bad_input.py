@@ -114,7 +114,7 @@ def test_tasks_that_this_version_lacks_are_refused_as_the_command_refuses_them(
         return
     first = said.stderr.splitlines()[0].split(": ", 2)[2]
     assert first in refusal(lw.motion, [[10, 9, 5], [9, 30, 35], [20, 31, 40]])
-    assert "function" in refusal(lw.function, [0, 15, 30], [0, 11, 25])
+    assert "output" in refusal(lw.function, [0, 15, 30], output=[0, 11, 25])
 
 
 def test_settings_are_refused() -> None:

@@ -101,6 +101,8 @@ impl Target {
             candidate,
             target_name: self.name.clone(),
             target: path.points.clone(),
+            pairs: path.pairs(),
+            noun: path.noun(),
             body: path.body.clone(),
             unit: self.unit.or(unit),
             measure: self.problem.spec().measure(),

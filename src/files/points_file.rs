@@ -1,5 +1,6 @@
 //! Points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`, of poses
-//! also `angle_deg` and `tolerance_deg`; `#` comments.
+//! also `angle_deg` and `tolerance_deg`; of a function's pairs `input_deg,output_deg` and optionally `weight`,
+//! `tolerance_deg`; `#` comments.
 
 use crate::files::diagnostic::{Checked, Diagnostic, counted, quoted};
 use crate::files::input_text;
@@ -10,10 +11,30 @@ use std::path::Path;
 
 pub use crate::task::spec::MAX_POINTS;
 
-/// The columns that are read.
-const COLUMNS: [&str; 7] = ["x", "y", "crank_deg", "weight", "tolerance", "angle_deg", "tolerance_deg"];
+/// The columns of a file of points or poses; the first two are needed.
+const COLUMNS: Layout = Layout {
+    columns: ["x", "y", "crank_deg", "weight", "tolerance", "angle_deg", "tolerance_deg"],
+    one: "point",
+};
+/// The columns of a file of pairs.
+const PAIRS: Layout =
+    Layout { columns: ["input_deg", "output_deg", "", "weight", "", "", "tolerance_deg"], one: "pair" };
 /// The column whose cells may be empty.
 const ANGLE: usize = 5;
+
+/// The columns that are read from a file, by their places in [`PointsFile`], and the word for one row.
+#[derive(Clone, Copy)]
+struct Layout {
+    columns: [&'static str; 7],
+    one: &'static str,
+}
+
+impl Layout {
+    /// Returns the names of the columns.
+    fn names(&self) -> Vec<&'static str> {
+        self.columns.into_iter().filter(|column| !column.is_empty()).collect()
+    }
+}
 
 /// The points of a CSV file and their other columns.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +43,7 @@ pub struct PointsFile {
     pub file: String,
     /// The text of the file.
     pub text: String,
-    /// The points.
+    /// The points; of pairs the input and the output, degrees.
     pub points: Vec<[f64; 2]>,
     /// The crank angle at each point, in degrees.
     pub crank_deg: Option<Vec<f64>>,
@@ -43,10 +64,20 @@ pub struct PointsFile {
 /// Returns whether a file has a column of body angles, so that its rows are poses. An unreadable file is left to the
 /// diagnostics of [`load`], and a pipe, which can be read only once.
 pub fn holds_poses(path: &Path) -> bool {
+    has_column(path, COLUMNS.columns[ANGLE])
+}
+
+/// Returns whether a file has a column of inputs, so that its rows are pairs of a function.
+pub fn holds_pairs(path: &Path) -> bool {
+    has_column(path, PAIRS.columns[0])
+}
+
+/// Returns whether the header of a file names a column.
+fn has_column(path: &Path, name: &str) -> bool {
     let text = if path.is_file() { input_text::read(path).unwrap_or_default() } else { String::new() };
     let text = input_text::without_mark(&text);
     let header = Rows::new("", text).header().ok().flatten();
-    header.is_some_and(|header| header.cells.iter().any(|cell| cell.eq_ignore_ascii_case(COLUMNS[ANGLE])))
+    header.is_some_and(|header| header.cells.iter().any(|cell| cell.eq_ignore_ascii_case(name)))
 }
 
 /// Reads the points of a file.
@@ -63,12 +94,35 @@ pub fn load(path: &Path) -> Result<PointsFile, Box<Diagnostic>> {
 /// # Errors
 /// A [`Diagnostic`] that points at the row and cell at fault.
 pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
+    parse_as(&COLUMNS, file, text)
+}
+
+/// Reads the pairs of a function from a file.
+///
+/// # Errors
+/// A [`Diagnostic`] that points at the row and cell at fault.
+pub fn load_pairs(path: &Path) -> Result<PointsFile, Box<Diagnostic>> {
+    let text = input_text::read(path)?;
+    parse_pairs(&path.display().to_string(), &text)
+}
+
+/// Reads the pairs of a function from a text; `file` is shown in diagnostics.
+///
+/// # Errors
+/// A [`Diagnostic`] that points at the row and cell at fault.
+pub fn parse_pairs(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
+    parse_as(&PAIRS, file, text)
+}
+
+fn parse_as(layout: &Layout, file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
+    let [first, second] = [layout.columns[0], layout.columns[1]];
     let text = input_text::without_mark(text);
     let mut table = Rows::new(file, text);
     let Some(header) = table.header()? else {
-        return Err(table.at(None, "the file is empty", "write a first line x,y and then one point a line"));
+        let help = format!("write a first line {first},{second} and then one {} a line", layout.one);
+        return Err(table.at(None, "the file is empty", help));
     };
-    let columns = Columns::of(&table, &header)?;
+    let columns = Columns::of(&table, &header, layout)?;
     let mut values = columns.place.map(|place| place.map(|_| Vec::new()));
     let mut angles = columns.place[ANGLE].map(|_| Vec::new());
     let mut rows = Vec::new();
@@ -80,15 +134,24 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
             return Err(table.ragged(&row, header.cells.len()));
         }
         if rows.len() == MAX_POINTS {
-            let help = "leave out points: a few hundred describe any path that a four-bar can trace";
-            return Err(table.at(row.span, format!("there are more than {MAX_POINTS} points"), help));
+            let help =
+                format!("leave out {}s: a few hundred describe all that a four-bar can do", layout.one);
+            return Err(table.at(
+                row.span,
+                format!("there are more than {MAX_POINTS} {}s", layout.one),
+                help,
+            ));
         }
         if let (Some(place), Some(list)) = (columns.place[ANGLE], &mut angles) {
             let is_empty = row.cells.get(place).is_none_or(String::is_empty);
-            list.push(if is_empty { None } else { Some(table.number(&row, place, COLUMNS[ANGLE])?) });
+            list.push(if is_empty {
+                None
+            } else {
+                Some(table.number(&row, place, layout.columns[ANGLE])?)
+            });
         }
-        for ((name, place), list) in COLUMNS.iter().zip(columns.place).zip(&mut values) {
-            let (Some(place), Some(list)) = (place.filter(|_| *name != COLUMNS[ANGLE]), list) else {
+        for ((name, place), list) in layout.columns.iter().zip(columns.place).zip(&mut values) {
+            let (Some(place), Some(list)) = (place.filter(|_| *name != layout.columns[ANGLE]), list) else {
                 continue;
             };
             let value = table.number(&row, place, name)?;
@@ -105,8 +168,8 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
         rows.push(row.span);
     }
     if rows.is_empty() {
-        let help = "write one point a line, such as 1.5,2";
-        return Err(table.at(header.span, "there are no points under the header", help));
+        let help = format!("write one {} a line, such as 1.5,2", layout.one);
+        return Err(table.at(header.span, format!("there are no {}s under the header", layout.one), help));
     }
     let [x, y, crank_deg, weight, tolerance, _, tolerance_deg] = values;
     let points = x.into_iter().flatten().zip(y.into_iter().flatten()).map(|(x, y)| [x, y]).collect();
@@ -295,7 +358,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(table: &Rows<'_>, header: &Row) -> Checked<Columns> {
+    fn of(table: &Rows<'_>, header: &Row, layout: &Layout) -> Checked<Columns> {
         let refuse = |message: &str, help: &str| Err(table.at(header.span.clone(), message, help));
         if let [only] = header.cells.as_slice()
             && let Some((_, name)) =
@@ -306,13 +369,14 @@ impl Columns {
             return refuse(&format!("the columns are separated by {name}"), help);
         }
         if header.cells.iter().all(|c| c.is_empty() || c.parse::<f64>().is_ok() || is_decimal_comma(c)) {
-            return refuse("the header is missing: the first row holds numbers", "write a first line x,y");
+            let help = format!("write a first line {},{}", layout.columns[0], layout.columns[1]);
+            return refuse("the header is missing: the first row holds numbers", &help);
         }
         let mut columns = Columns { place: [None; 7], warnings: Vec::new() };
         let mut extra = Vec::new();
         for (i, cell) in header.cells.iter().enumerate() {
             let name = cell.to_lowercase();
-            match COLUMNS.iter().position(|c| *c == name) {
+            match layout.columns.iter().position(|c| *c == name && !c.is_empty()) {
                 Some(c) if columns.place[c].is_some() => {
                     let message = format!("there are two columns {name}");
                     let help = "remove or rename one of them";
@@ -323,18 +387,21 @@ impl Columns {
                 None => extra.push(i),
             }
         }
-        columns.warnings.extend(extra_columns(table, header, &extra));
+        columns.warnings.extend(extra_columns(table, header, &extra, layout));
         if let Some(c) = columns.place[..2].iter().position(Option::is_none) {
-            let help =
-                format!("name the columns in the first row: {} (x and y are needed)", COLUMNS.join(", "));
-            return refuse(&format!("there is no column {}", COLUMNS[c]), &help);
+            let [first, second] = [layout.columns[0], layout.columns[1]];
+            let help = format!(
+                "name the columns in the first row: {} ({first} and {second} are needed)",
+                layout.names().join(", ")
+            );
+            return refuse(&format!("there is no column {}", layout.columns[c]), &help);
         }
         Ok(columns)
     }
 }
 
 /// Returns one warning for all columns that are not read; it points at the first.
-fn extra_columns(table: &Rows<'_>, header: &Row, extra: &[usize]) -> Option<Diagnostic> {
+fn extra_columns(table: &Rows<'_>, header: &Row, extra: &[usize], layout: &Layout) -> Option<Diagnostic> {
     /// The largest number of columns that the warning names, to keep it short.
     const NAMED: usize = 6;
     let first = *extra.first()?;
@@ -344,9 +411,9 @@ fn extra_columns(table: &Rows<'_>, header: &Row, extra: &[usize]) -> Option<Diag
         1 => format!("the column {} is not used", named[0]),
         _ => format!("the columns {}{more} are not used", named.join(", ")),
     };
-    let hint =
-        nearest(&header.cells[first], &COLUMNS).map_or(String::new(), |n| format!("did you mean {n}? "));
-    let help = format!("{hint}columns that are read: {}", COLUMNS.join(", "));
+    let hint = nearest(&header.cells[first], &layout.names())
+        .map_or(String::new(), |n| format!("did you mean {n}? "));
+    let help = format!("{hint}columns that are read: {}", layout.names().join(", "));
     let span = header.cell_span(table.text, first);
     Some(Diagnostic::new(table.file, table.text, message).at(span).with_help(help))
 }

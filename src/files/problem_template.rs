@@ -33,6 +33,25 @@ tolerance_deg = 1               # and of the angle
 # weight = [1, 1, 1, 1, 5]      # one a pose: the last counts five times
 ";
 
+/// The pairs of a function, and other ways to give them.
+const SAMPLE_PAIRS: &str = "\
+# How far the follower is to turn as the crank turns, degrees, counter-clockwise positive: one output for each input.
+# Many pairs: file = \"table.csv\" (columns input_deg,output_deg). Here a flap that opens faster and faster.
+input_deg = [0, 15, 30, 45, 60, 75, 90]
+output_deg = [0, 2, 8, 18, 31, 48, 67]
+# Or of a formula in x: both links turn in proportion, the crank to x and the follower to the value.
+# of = \"log10(x)\"
+# over = [1, 2]                   # from the first to the last x
+# input_range_deg = 60            # so far does the crank turn
+# output_range_deg = 90           # so far does the follower turn
+# samples = 61
+sense = \"any\"                   # \"same\": both turn counter-clockwise; \"opposite\": the follower the other way
+input_offset = \"free\"           # where the crank starts is free; \"ground\": inputs count from the line A to B
+output_offset = \"free\"          # the same of the follower
+tolerance_deg = 1               # the largest error of the output; remove to take the best there is
+# weight = [1, 1, 1, 1, 1, 1, 5]  # one a pair: the last counts five times
+";
+
 /// The task of a template.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TemplateTask {
@@ -40,6 +59,8 @@ pub enum TemplateTask {
     Path,
     /// Poses that a body is to pass.
     Motion,
+    /// Angles that the follower is to have.
+    Function,
 }
 
 /// Returns the text of a problem file called `name` for a task, with sample targets or with those of a CSV file or, for a
@@ -52,6 +73,7 @@ pub fn problem_template(name: &str, task: TemplateTask, from: Option<&str>) -> R
     match task {
         TemplateTask::Path => Ok(path_template(name, from)),
         TemplateTask::Motion => Ok(motion_template(name, from)),
+        TemplateTask::Function => Ok(function_template(name, from)),
     }
 }
 
@@ -86,6 +108,27 @@ fn motion_template(name: &str, poses_file: Option<&str>) -> String {
     let requirements = requirements().replace("type = ", "# type = ");
     let timing = TIMING.replace("task.path", "task.motion").replace("point", "pose");
     head + &poses + &timing + &design + BODY + REQUIRE + &requirements + PINS + SOLVE + END
+}
+
+fn function_template(name: &str, pairs_file: Option<&str>) -> String {
+    let pairs = match pairs_file {
+        None => SAMPLE_PAIRS.to_owned(),
+        Some(file) => format!(
+            "# How far the follower is to turn as the crank turns: columns input_deg,output_deg and optionally weight,\n\
+             # tolerance_deg.\n\
+             file = {}\n\
+             sense = \"any\"                   # \"same\" or \"opposite\": how the follower turns with the crank\n\
+             input_offset = \"free\"           # \"ground\": inputs count from the line A to B\n\
+             output_offset = \"free\"          # the same of the follower\n\
+             # tolerance_deg = 1             # the largest error of the output accepted\n",
+            quoted(file)
+        ),
+    };
+    let head = HEAD.replace("NAME", &quoted(name)).replace("[task.path]", "[task.function]");
+    let head = head.replace("where the points come from", "where the pairs come from");
+    // A follower that is moved to and fro needs no crank that turns fully.
+    let requirements = requirements().replace("type = ", "# type = ");
+    head + &pairs + FUNCTION_DESIGN + REQUIRE + &requirements + SOLVE + END
 }
 
 fn path_template(name: &str, points_file: Option<&str>) -> String {
@@ -156,6 +199,17 @@ const DESIGN: &str = r#"
 # b = [20, 200]                 # coupler
 # c = [20, 200]                 # follower
 # ground = [50, 200]            # from A to B
+"#;
+
+/// The design of a function.
+const FUNCTION_DESIGN: &str = r#"
+# The size of the linkage: the function alone says nothing about it. A number fixes, [min, max] bounds.
+[design]
+A = [0, 0]                      # pivot of the crank
+B = [100, 0]                    # pivot of the follower
+# a = [20, 300]                 # crank; where silent, a tenth to ten times the line from A to B, as are b and c
+# b = [20, 300]                 # coupler
+# c = [20, 300]                 # follower
 "#;
 
 /// The tracing point on the coupler.

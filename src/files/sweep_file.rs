@@ -302,7 +302,7 @@ fn check(
                 None => diagnostic,
             }));
         }
-        if let ("task.path.file" | "task.path.svg" | "task.motion.file", Some(file)) =
+        if let ("task.path.file" | "task.path.svg" | "task.motion.file" | "task.function.file", Some(file)) =
             (key.as_str(), value.as_str())
         {
             template.add_named(problem, key, file).map_err(|d| {

@@ -17,9 +17,8 @@ pub(crate) struct TomlText<'a> {
     pub text: &'a str,
 }
 
-/// The tables of `[task]` that are known but not supported yet.
-const TASKS_TO_COME: [&str; 1] = ["function"];
-const TASKS: &str = "a problem has one task: [task.path] or [task.motion]";
+/// The keys of `[task.function]` that are known but not supported yet.
+const FUNCTION_TO_COME: [&str; 1] = ["output"];
 /// The keys of `[task.motion]` that are known but not supported yet.
 const MOTION_TO_COME: [&str; 1] = ["exact"];
 
@@ -171,22 +170,15 @@ impl<'a> TomlText<'a> {
     }
 
     fn unknown_key(&self, key: &str, allowed: &[&str], span: Option<&Range<usize>>) -> Diagnostic {
-        if TASKS_TO_COME.contains(&key) && allowed.contains(&"path") {
-            let first = ["path", "motion"].into_iter().find(|first| {
-                let place = self.place(&format!("task.{first}"));
-                place.is_some_and(|(key, _)| self.text.get(key) == Some(first))
-            });
-            let message = if let Some(first) = first {
-                format!("two tasks: [task.{first}] and [task.{key}], which is not supported yet")
-            } else {
-                format!("[task.{key}] is not supported yet")
-            };
-            return self.about_file(message).with_help(TASKS);
-        }
         if MOTION_TO_COME.contains(&key) && allowed.contains(&"poses") {
             return self
                 .about_file(format!("{key} is not supported yet in [task.motion]"))
                 .with_help("remove it: poses are approached, all alike; a large weight, or a small tolerance, brings one nearer");
+        }
+        if FUNCTION_TO_COME.contains(&key) && allowed.contains(&"output_deg") {
+            return self.about_file(format!("{key} is not supported yet in [task.function]")).with_help(
+                "the output is the follower's angle: write output_deg; a slider as output is still to come",
+            );
         }
         if key == "task" && allowed.contains(&"vector_loop") {
             return self.about_file("this is a problem file, not a linkage file").with_help(

@@ -11,9 +11,9 @@ use crate::mechanism::{AssemblyMode, Complex, FourBar, point};
 use crate::record::{
     AngleErrorRecord, Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord,
 };
-use crate::task::Problem;
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::{Limits, Objective, TransmissionOver};
+use crate::task::{AngleOffset, Problem, Sense};
 
 pub use crate::record::MET_TOLERANCE;
 
@@ -35,8 +35,8 @@ pub fn assess(
 
 /// Judges a candidate anew, by this problem; the body of a motion keeps its place on the coupler.
 pub fn assess_again(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
-    let Candidate { linkage, crank_deg, t1_at, frame_deg, .. } = candidate;
-    assess_on_curve(problem, linkage, (crank_deg, t1_at), *frame_deg, None)
+    let Candidate { linkage, crank_deg, t1_at, .. } = candidate;
+    assess_on_curve(problem, linkage, (crank_deg, t1_at), candidate.own_frame_deg(), None)
 }
 
 /// Computes the distances of a candidate to its whole curve anew. Those of the candidates that a search does not list are
@@ -47,8 +47,8 @@ pub fn measure_curve(problem: &Problem, candidate: &mut Candidate) {
     }
 }
 
-/// As [`assess`] at the positions `at`, for a body of a motion at `frame_deg` from the direction C -> D (without it: where
-/// its errors are least) and for a linkage whose distances to its whole curve may be known: a cognate has those of the
+/// As [`assess`] at the positions `at`, for a link whose angles count from `frame_deg` ([`Candidate::own_frame_deg`];
+/// without it: where the errors are least) and for a linkage whose distances to its whole curve may be known: a cognate has those of the
 /// linkage that it is a cognate of. They are most of the cost.
 ///
 /// # Panics
@@ -84,12 +84,33 @@ pub fn assess_on_curve(
         TransmissionOver::Used => verdict.motion.transmission(),
     };
     let rms = rms(error.sum_sq, task.len());
+    let of_link = error.angle.as_ref().map(|angle| AngleErrorRecord {
+        rms_deg: angle.rms.to_degrees(),
+        max_deg: angle.max.to_degrees(),
+        max_at: angle.max_at,
+    });
+    let is_function = task.is_function();
+    let given_frame = || error.angle.as_ref().map(|angle| frame_deg.unwrap_or(angle.frame.to_degrees()));
+    let ground_deg = linkage.ground_angle().to_degrees();
+    let output = error.angle.as_ref().filter(|_| is_function);
+    let given = problem.spec().task.timing.as_ref().filter(|_| is_function);
     let mut candidate = Candidate {
         rank: 0,
         linkage: *linkage,
         crank_deg: crank_deg.to_vec(),
         t1_at: assemblies.to_vec(),
-        frame_deg: error.angle.as_ref().map(|angle| frame_deg.unwrap_or(angle.frame.to_degrees())),
+        frame_deg: given_frame().filter(|_| !is_function),
+        input_offset_deg: given.map(|given| match given.offset {
+            AngleOffset::Ground => 0.0,
+            AngleOffset::Free | AngleOffset::Fixed => {
+                within_half_a_turn(crank_deg[0] - given.crank_deg[0] - ground_deg)
+            }
+        }),
+        output_offset_deg: output.map(|angle| {
+            let counts_from_ground = task.body().and_then(|body| body.given_frame(0.0)).is_some();
+            if counts_from_ground { 0.0 } else { within_half_a_turn(-angle.frame.to_degrees() - ground_deg) }
+        }),
+        sense: output.map(|angle| Sense::of(angle.sign)),
         error: ErrorRecord {
             objective: match problem.spec().solve.objective {
                 Objective::SumOfSquares => error.objective,
@@ -99,13 +120,10 @@ pub fn assess_on_curve(
             rms,
             max: error.max,
             max_at: error.max_at,
-            rms_over_size: rms / task.size(),
+            rms_over_size: rms / task.error_size(),
             to_curve,
-            angle: error.angle.as_ref().map(|angle| AngleErrorRecord {
-                rms_deg: angle.rms.to_degrees(),
-                max_deg: angle.max.to_degrees(),
-                max_at: angle.max_at,
-            }),
+            angle: of_link.filter(|_| !is_function),
+            output: of_link.filter(|_| is_function),
             to_raw: None,
         },
         linkage_type,
@@ -131,6 +149,11 @@ pub fn assess_on_curve(
     candidate.accepted = candidate.requirements.iter().all(|r| r.met)
         && !candidate.defects.iter().any(|d| problem.spec().require.forbids(d));
     Some(candidate)
+}
+
+/// Returns an angle in degrees within half a turn.
+fn within_half_a_turn(deg: f64) -> f64 {
+    deg - 360.0 * (deg / 360.0).round()
 }
 
 /// Returns the distances from the points as they were given, before smoothing and resampling, to the coupler curve of a

@@ -14,23 +14,26 @@ pub struct StructuralError {
     /// The error vectors of the place, desired minus generated, one per target.
     pub structural: Vec<Complex>,
     /// The weighted sum of squares, sum_j w_j (|T_j - P_j|^2 + (W dtheta_j)^2) with the angle's weight W, a length; in a
-    /// path the first term alone.
+    /// path the first term alone, in a function the second, in degrees squared.
     pub objective: f64,
-    /// The sum of squares, sum_j |T_j - P_j|^2.
+    /// The sum of squares, sum_j |T_j - P_j|^2; in a function of the output's errors, degrees squared.
     pub sum_sq: f64,
-    /// The largest error, max_j |T_j - P_j|.
+    /// The largest error, max_j |T_j - P_j|; in a function of the output, degrees.
     pub max: f64,
     /// The index of the first point with the largest error.
     pub max_at: usize,
-    /// The errors of the body's angle, in a motion.
+    /// The errors of the body's angle in a motion, of the follower's in a function.
     pub angle: Option<AngleError>,
 }
 
-/// The errors of a body's angle at the targets of a motion.
+/// The errors of a link's angle at the targets: of a body's in a motion, of the follower's in a function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngleError {
-    /// The angle from the direction C -> D to the body's x axis, in radians, within half a turn.
+    /// The angle from the direction C -> D to the body's x axis, in radians, within half a turn; in a function the angle
+    /// from the direction B -> D to that of an output of zero.
     pub frame: f64,
+    /// The sign in which the angles count: +1 of a body.
+    pub sign: f64,
     /// The errors, desired minus generated, in radians within half a turn; `None` where only the place counts.
     pub structural: Vec<Option<f64>>,
     /// The root of the mean square, over the targets that have an angle.
@@ -42,14 +45,23 @@ pub struct AngleError {
 }
 
 impl AngleError {
-    /// Returns the errors of a body that lies at `frame` from the couplers' directions (radians), one a target; without a
-    /// frame, of one that lies so that the weighted sum of squares is least.
-    fn of(body: &Body, weights: &[f64], couplers: &[f64], frame: Option<f64>) -> AngleError {
+    /// Returns the errors of a link in directions `lines` (radians), one a target, whose angles count from `frame`; without a
+    /// frame, so that the weighted sum of squares is least. Of two senses that are allowed it is the one of the lesser sum.
+    fn of(body: &Body, weights: &[f64], lines: &[f64], frame: Option<f64>) -> AngleError {
+        let with = |sign: &f64| AngleError::with(body, (weights, *sign), lines, frame);
+        let all = body.signs().iter().map(with);
+        // Of equal ones the first.
+        let least = all.reduce(|one, other| if other.rms < one.rms { other } else { one });
+        least.unwrap_or_else(|| with(&1.0))
+    }
+
+    /// As [`AngleError::of`] in the sense of a sign.
+    fn with(body: &Body, (weights, sign): (&[f64], f64), lines: &[f64], frame: Option<f64>) -> AngleError {
         let apart: Vec<Option<f64>> = body
             .angles
             .iter()
-            .zip(couplers)
-            .map(|(angle, coupler)| angle.map(|angle| angle - coupler))
+            .zip(lines)
+            .map(|(angle, line)| angle.map(|angle| sign * angle - line))
             .collect();
         let frame = frame.unwrap_or_else(|| best_frame(&apart, weights));
         let structural: Vec<Option<f64>> =
@@ -63,7 +75,14 @@ impl AngleError {
                 (max, max_at) = (error.abs(), Some(j));
             }
         }
-        AngleError { frame, structural, rms: rms(sum_sq, count.max(1)), max, max_at: max_at.unwrap_or(0) }
+        AngleError {
+            frame,
+            sign,
+            structural,
+            rms: rms(sum_sq, count.max(1)),
+            max,
+            max_at: max_at.unwrap_or(0),
+        }
     }
 }
 
@@ -124,12 +143,14 @@ impl Task {
             max_at: 0,
             angle: None,
         };
-        let mut couplers = Vec::new();
-        for (j, &target) in self.points().iter().enumerate() {
+        let mut lines = Vec::new();
+        for j in 0..self.len() {
             let joints = linkage.position_with(crank_angles[j], assemblies[j]).joints()?;
-            if self.body().is_some() {
-                couplers.push((joints.follower_pin - joints.crank_pin).arg());
+            if let Some(body) = self.body() {
+                let line = body.line([linkage.follower_pivot(), joints.crank_pin, joints.follower_pin]);
+                lines.push(line.arg());
             }
+            let Some(&target) = self.points().get(j) else { continue };
             let difference = target - joints.coupler_point;
             let sq = difference.norm_sqr();
             error.structural.push(difference);
@@ -141,10 +162,16 @@ impl Task {
             }
         }
         if let Some(body) = self.body() {
-            let angle = AngleError::of(body, self.weights(), &couplers, frame);
+            let frame = body.given_frame(linkage.ground_angle()).or(frame);
+            let angle = AngleError::of(body, self.weights(), &lines, frame);
             for (error_of_angle, weight) in angle.structural.iter().zip(self.weights()) {
                 let length = body.angle_weight * error_of_angle.unwrap_or(0.0);
                 error.objective += weight * length * length;
+            }
+            if self.is_function() {
+                error.sum_sq =
+                    angle.structural.iter().flatten().map(|e| (body.angle_weight * e).powi(2)).sum();
+                (error.max, error.max_at) = (body.angle_weight * angle.max, angle.max_at);
             }
             error.angle = Some(angle);
         }
@@ -155,7 +182,7 @@ impl Task {
 /// Returns the errors of a candidate at its own positions and in its own frame; `None` if the loop is open at a target.
 pub fn structural_error(problem: &Problem, candidate: &Candidate) -> Option<StructuralError> {
     let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-    let frame = candidate.frame_deg.map(f64::to_radians);
+    let frame = candidate.own_frame_deg().map(f64::to_radians);
     problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at, frame)
 }
 
@@ -180,6 +207,9 @@ pub fn distances_to_curve(
         .map(|&point| Some(curve.nearest(point)?.distance))
         .collect();
     let distances = distances?;
+    if distances.is_empty() {
+        return Some(CurveErrorRecord { sum_sq: 0.0, rms: 0.0, max: 0.0 });
+    }
     let sum_sq = distances.iter().map(|distance| distance * distance).sum();
     let max = distances.into_iter().fold(0.0, f64::max);
     Some(CurveErrorRecord { sum_sq, rms: rms(sum_sq, points.len()), max })

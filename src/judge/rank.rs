@@ -42,7 +42,7 @@ fn exact_mean_sq(problem: &Problem) -> f64 {
 
 /// Returns the sum of squares below which a fit is exact.
 pub fn exact_sum_sq(problem: &Problem) -> f64 {
-    exact_mean_sq(problem) * problem.task().len() as f64 * problem.task().size().powi(2)
+    exact_mean_sq(problem) * problem.task().len() as f64 * problem.task().error_size().powi(2)
 }
 
 /// Returns whether a candidate meets all targets exactly, in a motion the body's angles too.
@@ -58,7 +58,9 @@ pub fn holds_an_exact(problem: &Problem, candidates: &[Candidate]) -> bool {
 
 /// Returns the weighted sum of squares below which a fit is exact.
 pub fn exact_cost(problem: &Problem) -> f64 {
-    exact_mean_sq(problem) * problem.task().weights().iter().sum::<f64>() * problem.task().size().powi(2)
+    exact_mean_sq(problem)
+        * problem.task().weights().iter().sum::<f64>()
+        * problem.task().error_size().powi(2)
 }
 
 /// Returns the objective below which a fit is exact: a weighted sum of squares; or a largest deviation, which is a
@@ -69,7 +71,7 @@ pub fn exact_objective(problem: &Problem) -> f64 {
         Objective::MaxDeviation => {
             let least =
                 problem.task().tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min));
-            exact_mean_sq(problem).sqrt() * problem.task().size() / least
+            exact_mean_sq(problem).sqrt() * problem.task().error_size() / least
         }
     }
 }
@@ -212,7 +214,9 @@ fn chosen_but_for(
                 continue;
             }
             let own = &looks[i];
-            dropped[i] = taken.iter().any(|&k| own.draws_the_curve_of(&looks[k], reach))
+            // The curve of a function's follower says nothing about the function.
+            dropped[i] = !problem.is_function()
+                && taken.iter().any(|&k| own.draws_the_curve_of(&looks[k], reach))
                 || images
                     .iter()
                     .any(|image| own.difference(image) < NEAR || own.draws_the_curve_of(image, reach));

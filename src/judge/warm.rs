@@ -6,7 +6,7 @@ use crate::task::forms::design_space::Shape;
 use crate::task::forms::rows::nearest_type;
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::{PathFit, Positions};
-use crate::task::{Problem, Setting};
+use crate::task::{Problem, Sense, Setting};
 
 /// Returns the start at a candidate; `None` if the loop is open at a point or there are fewer positions than points.
 ///
@@ -29,7 +29,7 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
     }
     let types = problem.types();
     let aim = if types.is_empty() { None } else { nearest_type(shape.links(), types) };
-    let (direction, mut offset) = direction_and_offset(problem, &candidate.crank_deg);
+    let (direction, mut offset) = direction_and_offset(problem, &candidate.crank_deg, candidate.sense);
     if let Some(frame) = candidate.frame_deg.filter(|_| problem.frame_is_free()) {
         offset = frame.to_radians();
     }
@@ -47,9 +47,14 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
     Some(Start { design, setting, positions })
 }
 
-/// Returns the direction of the prescribed increments and the angle that is added to them, in radians.
-fn direction_and_offset(problem: &Problem, crank_deg: &[f64]) -> (f64, f64) {
+/// Returns the direction of the prescribed increments (in a function the sign of its outputs) and the angle that is added
+/// to them, in radians.
+fn direction_and_offset(problem: &Problem, crank_deg: &[f64], sense: Option<Sense>) -> (f64, f64) {
     let Some(timing) = &problem.spec().task.timing else { return (problem.directions()[0], 0.0) };
+    if let Some(sense) = sense {
+        let offset = (crank_deg[0] - timing.crank_deg[0]).to_radians();
+        return (sense.signs()[0], if problem.offset_is_free() { offset } else { 0.0 });
+    }
     let written = &timing.crank_deg;
     let off = |direction: f64| {
         let steps = crank_deg.iter().zip(written);

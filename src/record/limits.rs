@@ -30,6 +30,7 @@ impl Record {
         let exact = self.exact.as_ref();
         let counts = [
             ("problem.resolved.task.path.points", path.points.len(), MAX_POINTS),
+            ("problem.resolved.task.function.output_deg", path.pairs().len(), MAX_POINTS),
             (
                 "problem.resolved.task.path.raw.points",
                 raw.map_or(0, |raw| raw.points.len()),

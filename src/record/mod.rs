@@ -18,9 +18,9 @@
 //! | [`sweep`] | sweeps: many problems that are one problem with different values of some keys |
 
 use crate::mechanism::{AssemblyMode, FourBar, LinkageType, Unit};
-use crate::task::Defect;
 pub use crate::task::requirement::LimitUnit;
 use crate::task::spec::{Method, ProblemSpec, TransmissionOver};
+use crate::task::{Defect, Sense};
 use digest::NotWritten;
 use serde::{Deserialize, Serialize};
 
@@ -265,6 +265,15 @@ pub struct Candidate {
     /// In a motion: the angle from the direction C -> D to the body's x axis, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame_deg: Option<f64>,
+    /// In a function: the crank's angle from the ground line A -> B at an input of zero, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input_offset_deg: Option<f64>,
+    /// In a function: the follower's angle from the ground line A -> B at an output of zero, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub output_offset_deg: Option<f64>,
+    /// In a function: the sense in which output angles count.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sense: Option<Sense>,
     /// How far the coupler point is from the target.
     pub error: ErrorRecord,
     /// The type.
@@ -300,8 +309,24 @@ pub struct Candidate {
     pub costs: Vec<Cost>,
 }
 
+impl Candidate {
+    /// Returns the angle from which the angles of its link count, degrees: in a motion `frame_deg`, from the direction C -> D
+    /// to the body's x axis; in a function from the follower's direction to that of an output of zero.
+    pub fn own_frame_deg(&self) -> Option<f64> {
+        let of_output = || Some(-(self.output_offset_deg? + self.linkage.ground_angle().to_degrees()));
+        self.frame_deg.or_else(of_output)
+    }
+}
+
 /// The word of a requirement's value for a motion that returns to its first point by reversing.
 pub const TO_AND_FRO: &str = "to-and-fro";
+
+impl ErrorRecord {
+    /// Returns the errors of the link whose angles are wanted: the body's in a motion, the follower's in a function.
+    pub fn of_link(&self) -> Option<&AngleErrorRecord> {
+        self.angle.as_ref().or(self.output.as_ref())
+    }
+}
 
 impl Candidate {
     /// Whether the motion returns to the first point of a closed path by reversing, and the problem allows that.
@@ -311,33 +336,36 @@ impl Candidate {
     }
 }
 
-/// The errors of a candidate, in the file's unit.
+/// The errors of a candidate, in the file's unit: of places; in a function of the output, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ErrorRecord {
     /// What was minimised: the weighted sum of squared distances; or the largest distance, in parts of its
     /// point's tolerance where tolerances are given.
     pub objective: f64,
-    /// The unweighted sum of squared distances at the points.
+    /// The unweighted sum of squared distances at the points, or of the output's errors.
     pub sum_sq: f64,
     /// sqrt(sum_sq / n).
     pub rms: f64,
-    /// The largest distance at a point.
+    /// The largest distance at a point, or error of the output.
     pub max: f64,
     /// Where it is, counted from 0.
     pub max_at: usize,
-    /// rms over the diagonal of the target's bounding box.
+    /// rms over the diagonal of the target's bounding box; in a function, that of the outputs over their range.
     pub rms_over_size: f64,
     /// Distances to the whole coupler curve of the circuit, whatever the timing.
     pub to_curve: CurveErrorRecord,
     /// In a motion: the errors of the body's angle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle: Option<AngleErrorRecord>,
+    /// In a function: the errors of the follower's angle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub output: Option<AngleErrorRecord>,
     /// Where the target was smoothed or resampled: distances of the points as they were given to that same curve.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to_raw: Option<CurveErrorRecord>,
 }
 
-/// The errors of a body's angle over the poses that give one.
+/// The errors of a body's angle over the poses that give one, or of the follower's over the pairs of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct AngleErrorRecord {
     /// The root of the mean square, degrees.

@@ -10,7 +10,8 @@ use serde::Serialize;
 /// The relative tolerance within which a figure reaches another: published optima have seven digits and more.
 pub const WITHIN: f64 = 1e-6;
 
-/// The errors of an answer of a motion, beside the sum of squared distances of its places.
+/// The errors of an answer of a motion, beside the sum of squared distances of its places; or of a function, whose errors
+/// are all of the output in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MotionErrors {
     /// The figure that answers of a motion are compared by: sum_j w_j (|T_j - P_j|^2 + (W dtheta_j)^2) with the weights

@@ -60,6 +60,12 @@ pub enum Known {
         /// A length: an angle error of one radian counts like an error of the place of this length.
         angle_weight: f64,
     },
+    /// Of a function: the sum of weighted squared errors of the output, in degrees squared. A run has to reach it to count
+    /// as a hit.
+    Function {
+        /// The least objective that is known.
+        best_known_objective: f64,
+    },
 }
 
 impl Known {
@@ -67,7 +73,9 @@ impl Known {
     pub fn best(&self) -> f64 {
         match *self {
             Known::Path { best_known_sum_sq, .. } => best_known_sum_sq,
-            Known::Motion { best_known_objective, .. } => best_known_objective,
+            Known::Motion { best_known_objective, .. } | Known::Function { best_known_objective } => {
+                best_known_objective
+            }
         }
     }
 
@@ -75,7 +83,9 @@ impl Known {
     pub fn goal(&self) -> f64 {
         match *self {
             Known::Path { goal_sum_sq, .. } => goal_sum_sq,
-            Known::Motion { best_known_objective, .. } => best_known_objective,
+            Known::Motion { best_known_objective, .. } | Known::Function { best_known_objective } => {
+                best_known_objective
+            }
         }
     }
 }
@@ -87,7 +97,7 @@ pub struct ProblemResult {
     pub name: String,
     /// The source of the problem.
     pub source: Option<String>,
-    /// The number of target points; of a motion, the number of poses and places.
+    /// The number of target points; of a motion, of poses and places; of a function, of pairs.
     pub points: usize,
     /// The figure that its answers are compared with.
     #[serde(flatten)]
@@ -171,6 +181,11 @@ impl ProblemResult {
     /// Returns whether the problem is a motion: poses of a body.
     pub fn is_motion(&self) -> bool {
         matches!(self.known, Known::Motion { .. })
+    }
+
+    /// Returns whether the problem is a function: angles of the follower.
+    pub fn is_function(&self) -> bool {
+        matches!(self.known, Known::Function { .. })
     }
 }
 

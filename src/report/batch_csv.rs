@@ -11,7 +11,7 @@ fn columns<'a>() -> [Column<BatchRow<'a>>; 12] {
     [
         ("problem", |row| cell(row.name)),
         ("status", |row| status(row).to_owned()),
-        ("points", |row| ran(row, |r| r.problem.resolved.task.points.len().to_string())),
+        ("points", |row| ran(row, |r| r.problem.resolved.task.len().to_string())),
         ("candidates", |row| ran(row, |r| r.candidates.len().to_string())),
         ("accepted", |row| row.outcome.map_or(String::new(), |_| row.accepted().to_string())),
         ("sum_sq", |row| best(row, |e| e.sum_sq)),

@@ -77,7 +77,7 @@ fn buildable(record: &Record, candidate: &Candidate) -> String {
         "{label} ({place}): sum of sq {}, rms {}{}{angle_error}, {}, worst transmission angle {} deg, ratio {}",
         significant(candidate.error.sum_sq, 6),
         significant(candidate.error.rms, 4),
-        words::unit_suffix(record),
+        words::error_unit(record),
         candidate.linkage_type.name(),
         significant(candidate.transmission_deg.worst, 3),
         significant(candidate.link_ratio, 3),

@@ -1,4 +1,5 @@
-//! The body of a motion at the positions of a candidate: its angles there, and their errors.
+//! The body of a motion, or the follower of a function, at the positions of a candidate: its angles there, and their
+//! errors.
 
 use crate::mechanism::Complex;
 use crate::mechanism::four_bar::mobility::wrapped;
@@ -11,7 +12,7 @@ use crate::task::spec::TaskSpec;
 pub(super) enum Part {
     /// The distance of the place.
     Place,
-    /// The error of the body's angle.
+    /// The error of the body's angle, or of the follower's.
     Angle,
 }
 
@@ -39,6 +40,10 @@ pub(super) fn error(task: &TaskSpec, candidate: &Candidate, target: usize, part:
         }
         Part::Angle => {
             let wanted = (*task.body.as_ref()?.angle_deg.get(target)?)?.to_radians();
+            if let Some(output) = output_deg(candidate, joints.follower_pin) {
+                let sign = candidate.sense?.signs()[0];
+                return Some(wrapped(sign * wanted - output.to_radians()).abs().to_degrees());
+            }
             let coupler = joints.follower_pin - joints.crank_pin;
             Some(wrapped(wanted - generated(coupler, candidate.frame_deg?)).abs().to_degrees())
         }
@@ -49,4 +54,12 @@ pub(super) fn error(task: &TaskSpec, candidate: &Candidate, target: usize, part:
 /// turn.
 pub(super) fn generated(coupler: Complex, frame_deg: f64) -> f64 {
     wrapped(coupler.arg() + frame_deg.to_radians())
+}
+
+/// Returns how far the follower of a function has turned from its angle at an output of 0, degrees counter-clockwise within
+/// half a turn, where its pin is; `None` for a candidate of another task.
+pub(super) fn output_deg(candidate: &Candidate, follower_pin: Complex) -> Option<f64> {
+    let linkage = &candidate.linkage;
+    let turned = (follower_pin - linkage.follower_pivot()).arg() - linkage.ground_angle();
+    Some(wrapped(turned - candidate.output_offset_deg?.to_radians()).to_degrees())
 }

@@ -114,7 +114,7 @@ fn cell(canvas: &mut Canvas, record: &Record, candidate: &Candidate, layout: &La
     canvas.area(frame, &(outline(palette::FAINT, 1) + r#" rx="4""#));
     thumbnail(canvas, record, candidate, Area { height: layout.drawing, ..frame });
 
-    let (rms, unit) = (significant(candidate.error.rms, 4), words::unit_suffix(record));
+    let (rms, unit) = (significant(candidate.error.rms, 4), words::error_unit(record));
     let angle = candidate.error.angle.map_or(String::new(), |a| format!(", {}°", significant(a.rms_deg, 3)));
     let rms = format!("#{}   rms {rms}{unit}{angle}", candidate.rank);
     // Beside an error of an angle "worst angle" would be taken for one.

@@ -44,6 +44,13 @@ pub(super) const OF_MOTION: [Column<Candidate>; 4] = [
     ("angle_max_at", |c| c.error.angle.map_or(String::new(), |angle| angle.max_at.to_string())),
 ];
 
+/// The figures that a candidate of a function has beside those.
+pub(super) const OF_FUNCTION: [Column<Candidate>; 3] = [
+    ("input_offset_deg", |c| c.input_offset_deg.map_or(String::new(), exact)),
+    ("output_offset_deg", |c| c.output_offset_deg.map_or(String::new(), exact)),
+    ("sense", |c| c.sense.map_or(String::new(), |sense| words::sense(sense).to_owned())),
+];
+
 /// The parameters of a linkage: coordinates, lengths and signs.
 pub(super) const PARAMETERS: [Column<FourBar, f64>; 11] = [
     ("Ax", |l| l.crank_pivot().re),
@@ -59,18 +66,25 @@ pub(super) const PARAMETERS: [Column<FourBar, f64>; 11] = [
     ("t2", |l| l.side().sign()),
 ];
 
-/// The header row of [`curve_csv`]; the curve of a motion has a last column [`BODY_ANGLE`].
+/// The header row of [`curve_csv`]; the curve of a motion has a last column [`BODY_ANGLE`], that of a function
+/// [`OUTPUT_ANGLE`].
 pub const CURVE_COLUMNS: [&str; 9] =
     ["crank_deg", "t1", "Cx", "Cy", "Dx", "Dy", "Px", "Py", "transmission_deg"];
 
 /// The column with the angle of a motion's body, from -180 to 180 degrees.
 pub const BODY_ANGLE: &str = "angle_deg";
 
+/// The column with the follower's angle in a function, from -180 to 180 degrees from its angle at an output of 0.
+pub const OUTPUT_ANGLE: &str = "output_deg";
+
 /// Returns one row for each candidate: every figure and parameter, defects as `order:3 7;branch:2` (points from 0), and
 /// the names of the requirements that are not met. Those of a motion have the errors of the angle too.
 pub fn candidates_csv(record: &Record) -> String {
-    let of_motion: &[Column<Candidate>] =
-        if record.problem.resolved.task.body.is_some() { &OF_MOTION } else { &[] };
+    let of_motion: &[Column<Candidate>] = match record.problem.resolved.task.table() {
+        "task.motion" => &OF_MOTION,
+        "task.function" => &OF_FUNCTION,
+        _ => &[],
+    };
     let head = names(&FIGURES).chain(names(of_motion)).chain(names(&PARAMETERS)).chain(["defects", "unmet"]);
     let rows = record.candidates.iter().map(|c| {
         let defects: Vec<String> = c.defects.iter().map(defect).collect();
@@ -150,6 +164,9 @@ pub fn candidate_curve_csv(candidate: &Candidate) -> String {
     if candidate.frame_deg.is_some() {
         text.push_str(&format!(",{BODY_ANGLE}"));
     }
+    if candidate.output_offset_deg.is_some() {
+        text.push_str(&format!(",{OUTPUT_ANGLE}"));
+    }
     text.push('\n');
     for row in curve(candidate) {
         for number in row {
@@ -160,6 +177,11 @@ pub fn candidate_curve_csv(candidate: &Candidate) -> String {
             let [.., cx, cy, dx, dy, _, _, _] = row;
             let coupler = Complex::new(dx - cx, dy - cy);
             push_exact(&mut text, body::generated(coupler, frame_deg).to_degrees());
+            text.push(',');
+        }
+        let [.., dx, dy, _, _, _] = row;
+        if let Some(output) = body::output_deg(candidate, Complex::new(dx, dy)) {
+            push_exact(&mut text, output);
             text.push(',');
         }
         text.pop();

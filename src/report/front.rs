@@ -108,7 +108,7 @@ fn rows(front: &Front, colour: Colour) -> String {
 /// Returns a line on the closest candidate of the search before the front.
 fn closest(record: &Record) -> Option<String> {
     let best = record.candidates.first()?;
-    let unit = words::unit_suffix(record);
+    let unit = words::error_unit(record);
     let others = match record.candidates.len() {
         1 => String::new(),
         n => {

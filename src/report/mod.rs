@@ -28,6 +28,7 @@
 //! | [`certificate`] | the certificate of a result, and the number of times its best answer was found, in words |
 //! | [`chain_sheet`] | a drawing of a compound mechanism at one position, with other positions drawn faintly and the path of its traced point |
 //! | [`chain_text`] | an analysis of a compound mechanism as text and as CSV |
+//! | [`chart`] | a chart of a few series against the crank angle |
 //! | [`cognates_sheet`] | Roberts' figure: a linkage and its cognates in one position, with the coupler curve that they share |
 //! | [`compare`] | comparison of linkages from several results: ranked by chosen figures, with the Pareto front of error, worst transmission angle and size marked, and differences from a chosen one in per cent |
 //! | [`contact_sheet`] | the contact sheet: small drawings of all candidates side by side |
@@ -37,6 +38,7 @@
 //! | [`export`] | export of linkages to files for building them: drawings in true millimetres, cutting and printing files, lists |
 //! | [`figure`] | the drawing of a scene: curve, linkage, target and labels |
 //! | [`front`] | the front as text: a row for each member |
+//! | [`function`] | the function of a candidate: its graph beside the one that is wanted, the error below, and the pairs |
 //! | [`grid`] | a table of text with aligned columns, and the colours of a terminal |
 //! | [`html`] | a run as an HTML page in one file: the linkage moving over its target, with every figure and verdict |
 //! | [`labels`] | placement of labels beside their points, where they hide least |
@@ -67,6 +69,7 @@ mod canvas;
 pub mod certificate;
 pub mod chain_sheet;
 pub mod chain_text;
+mod chart;
 pub mod cognates_sheet;
 pub mod compare;
 pub mod contact_sheet;
@@ -76,6 +79,7 @@ pub mod exact_sheet;
 pub mod export;
 mod figure;
 pub mod front;
+mod function;
 pub mod grid;
 pub mod html;
 mod labels;

@@ -57,13 +57,13 @@ fn line(
     candidate: &Candidate,
     closest: &Candidate,
 ) -> String {
-    let unit = words::unit_suffix(record);
+    let (unit, of_errors) = (words::unit_suffix(record), words::error_unit(record));
     let place = if candidate.rank > 0 { format!(" (#{})", candidate.rank) } else { String::new() };
     let angle_error = words::angle_errors(candidate).map_or(String::new(), |said| format!(", {said}"));
     let [own, other] = [candidate, closest].map(|c| significant(extent_of(problem, c), 4));
     let [angle, other_angle] = [candidate, closest].map(|c| significant(c.transmission_deg.worst, 3));
     format!(
-        "{}{place} {}: rms {}{unit}{angle_error}, extent {own}{unit} (#1: {other}), worst transmission angle {angle} deg (#1: \
+        "{}{place} {}: rms {}{of_errors}{angle_error}, extent {own}{unit} (#1: {other}), worst transmission angle {angle} deg (#1: \
          {other_angle}); linkage-{}.toml",
         pick.words(),
         within(record),

@@ -56,6 +56,9 @@ pub fn terminal_plot(record: &Record, index: usize, width: usize, height: usize,
         Glyphs::Braille => ('●', '○', "─", "  ⠤⠒ coupler curve"),
         Glyphs::Ascii => ('@', 'o', "-", "  . coupler curve"),
     };
+    let of_function = record.problem.resolved.task.is_function();
+    let of_pin = curve.replace("coupler curve", "way of the follower's pin");
+    let curve = if of_function { of_pin.as_str() } else { curve };
     // Marking many points would hide the curve. The first one is marked last, so that no other one hides it.
     let every = scene.targets.len().div_ceil(MOST_MARKS);
     for point in scene.targets.iter().rev().filter(|point| point.index % every == 0) {

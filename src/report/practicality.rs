@@ -38,6 +38,10 @@ pub fn practicality_text(
         Some(distances) => out.push_str(&words.distances(distances, 2.0 * practicality.build.pin_radius)),
         None => out.push_str(OPEN),
     }
+    // What moves the path says nothing about a function.
+    if practicality.noun == "pair" {
+        return out;
+    }
     out.push_str(&words.head("How much a wrong dimension moves the path"));
     match &practicality.sensitivity {
         Some(felt) => out.push_str(&words.sensitivity(felt, practicality, tolerance)),

@@ -15,7 +15,7 @@ pub(super) fn costs(record: &Record) -> String {
     if best.costs.is_empty() {
         return String::new();
     }
-    let of_motion = record.problem.resolved.task.body.is_some();
+    let of_motion = record.problem.resolved.task.table() == "task.motion";
     let with_angles = if of_motion { "; angle errors times angle_weight are part of the rms" } else { "" };
     let mut out = format!("\n  What the limits cost (#{}{with_angles})\n", best.rank);
     for (i, cost) in best.costs.iter().enumerate() {
@@ -47,10 +47,11 @@ pub(super) fn clause(record: &Record, candidate: &Candidate, name: &str) -> Opti
 
 /// Returns a sentence such as `pivots_in costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
 fn sentence(record: &Record, candidate: &Candidate, name: &str) -> String {
-    let unit = words::unit_suffix(record);
+    let unit = words::error_unit(record);
     let with = rms(record, candidate);
     let own = || candidate.costs.iter().filter(|cost| cost.name == name);
-    let rates: Vec<String> = own().filter_map(|cost| rate(record.problem.unit, with, cost)).collect();
+    let rates: Vec<String> =
+        own().filter_map(|cost| rate((record.problem.unit, &unit), with, cost)).collect();
     let without = own().find_map(|cost| cost.rms_without);
     let name = named(record, name);
     let total = without.map(|least| format!("costs {}{unit} of rms", significant(with - least, 2)));
@@ -70,7 +71,7 @@ fn named(record: &Record, name: &str) -> String {
 }
 
 /// Returns a clause such as `1 mm more at xmax gives back 0.10 mm`.
-fn rate(unit: Option<Unit>, rms: f64, cost: &Cost) -> Option<String> {
+fn rate((unit, of_errors): (Option<Unit>, &str), rms: f64, cost: &Cost) -> Option<String> {
     let rate = -cost.rms_per_unit?;
     if !(rate > 0.0 && rate.is_finite() && rms > 0.0) {
         return None;
@@ -97,7 +98,7 @@ fn rate(unit: Option<Unit>, rms: f64, cost: &Cost) -> Option<String> {
         (LimitUnit::Degree, _) => format!("{shown}° less than {}°", significant(cost.limit, 4)),
         (LimitUnit::Ratio, _) => format!("{shown} more than {}", significant(cost.limit, 4)),
     };
-    Some(format!("{room} gives back {}{}", significant(rate * step, 2), words::length_suffix(unit)))
+    Some(format!("{room} gives back {}{}", significant(rate * step, 2), of_errors))
 }
 
 /// Returns the requirements that conflict and the relaxations that would help; empty if a candidate is acceptable or
@@ -117,7 +118,7 @@ pub(super) fn relaxations(record: &Record) -> String {
 
 /// Returns the changes that help, in the form in which they are typed, each with the resulting error.
 pub(super) fn changes(record: &Record) -> Vec<(String, String)> {
-    let unit = words::unit_suffix(record);
+    let unit = words::error_unit(record);
     let of = |relaxation: &Relaxation| {
         let options: Vec<String> = relaxation.set.iter().map(option).collect();
         (options.join(" "), format!("rms {}{unit}", significant(relaxation.rms, 3)))

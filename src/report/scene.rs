@@ -1,6 +1,6 @@
 //! The scene of a candidate's drawing: target points, the circuits used, and one position of the linkage.
 
-use super::body;
+use super::{body, function};
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, Joints, MAX_MAGNITUDE, point};
 use crate::record::{Candidate, Record};
 use crate::task::spec::TaskSpec;
@@ -45,7 +45,15 @@ impl Scene {
         match candidate {
             None => Scene { targets: targets(record, None, &|_| None), ..Scene::default() },
             Some(candidate) => {
-                Scene::of(record, &candidate.linkage, &positions(candidate), candidate.frame_deg, SAMPLES)
+                let scene = Scene::of(
+                    record,
+                    &candidate.linkage,
+                    &positions(candidate),
+                    candidate.frame_deg,
+                    SAMPLES,
+                );
+                let pins = follower_pins(record, candidate);
+                if pins.is_empty() { scene } else { Scene { targets: pins, ..scene } }
             }
         }
     }
@@ -118,6 +126,28 @@ fn targets(
         }
     };
     usable.map(target).collect()
+}
+
+/// Returns the places of the follower's pin at the outputs that are wanted of a function, each with its place at the one
+/// generated; none for another task.
+fn follower_pins(record: &Record, candidate: &Candidate) -> Vec<Target> {
+    let linkage = &candidate.linkage;
+    let (Some(offset), Some(sense)) = (candidate.output_offset_deg, candidate.sense) else {
+        return Vec::new();
+    };
+    let pairs = function::pairs(&record.problem.resolved.task, candidate);
+    let at = |output: f64| {
+        let angle = linkage.ground_angle() + (offset + sense.signs()[0] * output).to_radians();
+        linkage.follower_pivot() + Complex::from_polar(linkage.follower(), angle)
+    };
+    let target = |(index, pair): (usize, &function::GeneratedPair)| Target {
+        index,
+        at: at(pair.wanted),
+        reached: pair.generated.map(at),
+        angle: None,
+        reached_angle: None,
+    };
+    pairs.iter().enumerate().map(target).collect()
 }
 
 /// Returns the crank angle (radians) and assembly at each point that has both.

@@ -22,6 +22,7 @@ pub fn snap_text(
 ) -> String {
     let Some(after) = snapped.candidates.first() else { return String::new() };
     let unit = length_suffix(unit);
+    let of_errors = if after.error.output.is_some() { "°" } else { &unit };
     let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
     let text =
         format!("{} snapped to {}{unit}; the rest fitted again.", keys.join(", "), request.stock.words());
@@ -34,8 +35,12 @@ pub fn snap_text(
         times if before.error.rms > 0.0 && times < 1e3 => format!(": {} times", brief(times, 3)),
         _ => String::new(),
     };
-    let cost = format!("The rms error goes from {was} to {is}{unit}{times}.");
-    let target = if after.frame_deg.is_some() { "pose" } else { "point" };
+    let cost = format!("The rms error goes from {was} to {is}{of_errors}{times}.");
+    let target = match (&after.frame_deg, &after.error.output) {
+        (Some(_), _) => "pose",
+        (None, Some(_)) => "pair",
+        (None, None) => "point",
+    };
     let plain = match &snapped.nearest {
         Some(c) if c.accepted == after.accepted => format!(
             "Each length to its nearest stock size at once would give {}.",

@@ -1,7 +1,7 @@
 //! A suite for the terminal and as Markdown: the same tables in two formats.
 //!
-//! Paths, whose answers are compared by a sum of squares, and motions, whose objective counts angles too, have tables of
-//! their own.
+//! Paths, whose answers are compared by a sum of squares, motions, whose objective counts angles too, and functions, whose
+//! errors are angles alone, have tables of their own.
 
 use super::grid::Align::{Left, Right};
 use super::grid::{Cell, Colour, Column, Grid, Ink, plain};
@@ -34,6 +34,11 @@ const WHAT_OF_MOTIONS: &str = "objective: the least one of all seeds, the sum ov
     (where that is 0: up to rounding); rms, rms deg: the root of the mean squared distance of the places and error of \
     the angle, in degrees, of the best answer; poses: how many, with those that are a place alone; evaluations: of the \
     objective, median.";
+const FUNCTIONS: &str = "Functions: an angle turned into another";
+const WHAT_OF_FUNCTIONS: &str = "objective: the least one of all seeds, the sum over the pairs of weight times squared error \
+    of the follower's angle, in degrees squared; median: of the accepted answers of all seeds; hits: seeds whose answer is \
+    accepted and reaches the best known objective within 1e-6 of it; rms deg: the root of the mean squared error of the \
+    best answer, degrees; evaluations: of the objective, median.";
 const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as printed (where that could be \
     read in the source) and by our referee; genetic, diff. evolution: their median sum over accepted answers, \
     after as many evaluations as the search above used in the median, and how many seeds had one.";
@@ -42,7 +47,7 @@ const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as 
 pub fn suite_text(suite: &Suite, colour: Colour) -> String {
     let said = |text: &str| wrapped("  ", "    ", text, COLUMNS);
     let mut out = String::new();
-    let (paths, motions) = by_kind(suite);
+    let (paths, motions, functions) = by_kind(suite);
     if !paths.is_empty() {
         out.push_str(&answers(&paths).shortened(NAME).render(colour));
         out.push('\n');
@@ -56,13 +61,26 @@ pub fn suite_text(suite: &Suite, colour: Colour) -> String {
             out.push('\n');
         }
         out.push_str(&format!("  {}\n\n", colour.paint(Ink::Strong, MOTIONS)));
-        for table in [answers_of_motions(&motions), effort(&motions)] {
+        for table in [answers_of_motions(&motions, true), effort(&motions, "poses")] {
             out.push_str(&table.shortened(NAME).render(colour));
             out.push('\n');
         }
         out.push_str(&said(WHAT_OF_MOTIONS));
         out.extend(paths.is_empty().then(|| said(TIMES)));
         out.extend(without_populations(&motions).map(|why| said(&why)));
+    }
+    if !functions.is_empty() {
+        if !(paths.is_empty() && motions.is_empty()) {
+            out.push('\n');
+        }
+        out.push_str(&format!("  {}\n\n", colour.paint(Ink::Strong, FUNCTIONS)));
+        for table in [answers_of_motions(&functions, false), effort(&functions, "pairs")] {
+            out.push_str(&table.shortened(NAME).render(colour));
+            out.push('\n');
+        }
+        out.push_str(&said(WHAT_OF_FUNCTIONS));
+        out.extend((paths.is_empty() && motions.is_empty()).then(|| said(TIMES)));
+        out.extend(without_populations(&functions).map(|why| said(&why)));
     }
     out.extend(proofs(suite).iter().map(|proof| said(proof)));
     let notes = notes(suite);
@@ -76,7 +94,7 @@ pub fn suite_text(suite: &Suite, colour: Colour) -> String {
 /// Returns a suite as a Markdown page, with the command that makes it again and every published figure with its source.
 pub fn suite_markdown(suite: &Suite) -> String {
     let paragraph = |text: &str| wrapped("", "", text, COLUMNS + 10) + "\n";
-    let (paths, motions) = by_kind(suite);
+    let (paths, motions, functions) = by_kind(suite);
     let whose = match &suite.collection {
         None => "of the literature".to_owned(),
         Some(folder) => format!("in {}", markdown(&clean(folder))),
@@ -93,7 +111,7 @@ pub fn suite_markdown(suite: &Suite) -> String {
          of whatever machine this ran on.",
         suite.seeds
     )));
-    let has_paths = !paths.is_empty() || motions.is_empty();
+    let has_paths = !paths.is_empty() || (motions.is_empty() && functions.is_empty());
     if has_paths {
         out.push_str("## The answers\n\n");
         out.push_str(&answers(&paths).markdown());
@@ -102,12 +120,21 @@ pub fn suite_markdown(suite: &Suite) -> String {
     }
     if !motions.is_empty() {
         out.push_str(&format!("## {MOTIONS}\n\n"));
-        for table in [answers_of_motions(&motions), effort(&motions)] {
+        for table in [answers_of_motions(&motions, true), effort(&motions, "poses")] {
             out.push_str(&table.markdown());
             out.push('\n');
         }
         out.push_str(&paragraph(WHAT_OF_MOTIONS));
         out.extend(without_populations(&motions).map(|why| paragraph(&why)));
+    }
+    if !functions.is_empty() {
+        out.push_str(&format!("## {FUNCTIONS}\n\n"));
+        for table in [answers_of_motions(&functions, false), effort(&functions, "pairs")] {
+            out.push_str(&table.markdown());
+            out.push('\n');
+        }
+        out.push_str(&paragraph(WHAT_OF_FUNCTIONS));
+        out.extend(without_populations(&functions).map(|why| paragraph(&why)));
     }
     out.push_str(&paragraph(TIMES));
     out.extend(is_certified(&paths).then(|| paragraph(PROVED)));
@@ -137,9 +164,11 @@ fn bullets(texts: &[String]) -> String {
     texts.iter().map(|text| wrapped("- ", "  ", &markdown(text), COLUMNS + 10)).collect::<String>() + end
 }
 
-/// Returns the paths and the motions of a suite.
-fn by_kind(suite: &Suite) -> (Vec<&ProblemResult>, Vec<&ProblemResult>) {
-    suite.problems.iter().partition(|problem| !problem.is_motion())
+/// Returns the paths, the motions and the functions of a suite.
+fn by_kind(suite: &Suite) -> (Vec<&ProblemResult>, Vec<&ProblemResult>, Vec<&ProblemResult>) {
+    let (functions, others): (Vec<_>, Vec<_>) = suite.problems.iter().partition(|p| p.is_function());
+    let (motions, paths) = others.into_iter().partition(|p| p.is_motion());
+    (paths, motions, functions)
 }
 
 /// Returns whether certificates were asked for.
@@ -168,7 +197,8 @@ fn proofs(suite: &Suite) -> Vec<String> {
             (None, None) => None,
         }
     };
-    let (paths, motions) = by_kind(suite);
+    let (paths, mut motions, functions) = by_kind(suite);
+    motions.extend(functions);
     let mut sentences: Vec<String> = paths.into_iter().filter_map(told).collect();
     let why = |problem: &&ProblemResult| Some((problem.name.clone(), problem.no_certificate.clone()?));
     sentences.extend(by_reason(motions.iter().filter_map(why)));
@@ -229,7 +259,8 @@ fn answers(problems: &[&ProblemResult]) -> Grid {
     Grid::of(problems, if is_certified(problems) { &columns } else { &columns[..9] })
 }
 
-fn answers_of_motions(problems: &[&ProblemResult]) -> Grid {
+/// Returns the table of the answers of motions, with errors of their places; or of functions, which have none.
+fn answers_of_motions(problems: &[&ProblemResult], with_places: bool) -> Grid {
     let best = |p: &ProblemResult, of: fn(&MotionErrors) -> f64| {
         p.search.summary.best.as_ref().and_then(|best| best.motion.as_ref()).map(of)
     };
@@ -245,14 +276,16 @@ fn answers_of_motions(problems: &[&ProblemResult]) -> Grid {
         (Right, "rms", &|p| number(best(p, |errors| errors.rms), 4)),
         (Right, "rms deg", &|p| number(best(p, |errors| errors.rms_deg), 4)),
     ];
-    Grid::of(problems, &columns)
+    const PLACES: usize = 5;
+    let shown = columns.iter().enumerate().filter(|(i, _)| with_places || *i != PLACES);
+    Grid::of(problems, &shown.map(|(_, column)| *column).collect::<Vec<_>>())
 }
 
-/// Returns the table of the times and evaluations of the searches for motions.
-fn effort(problems: &[&ProblemResult]) -> Grid {
+/// Returns the table of the times and evaluations of the searches for motions or functions; `targets` heads their number.
+fn effort(problems: &[&ProblemResult], targets: &'static str) -> Grid {
     let columns: [Column<'_, &ProblemResult>; 5] = [
         (Left, "problem", &|p| plain(clean(&p.name))),
-        (Right, "poses", &|p| plain(p.points.to_string())),
+        (Right, targets, &|p| plain(p.points.to_string())),
         (Right, "median ms", &|p| milliseconds(p.search.summary.median_search_s)),
         (Right, "worst ms", &|p| milliseconds(p.search.summary.worst_search_s)),
         (Right, "evaluations", &|p| evaluations(p)),

@@ -7,11 +7,12 @@ use super::canvas::{
     Anchor, Area, Canvas, Frame, ROUND_ENDS, Spot, View, filled, font, outline, palette, stroke,
 };
 use super::figure::{Detail, draw};
+use super::function;
 use super::scene::{SAMPLES, Scene, circuits};
-use super::text::{brief, clean, shortened, significant, text_width};
+use super::text::{brief, capitalised, clean, shortened, significant, text_width};
 use super::words;
 use crate::record::{Candidate, Record};
-use crate::task::spec::TransmissionOver;
+use crate::task::spec::{TaskSpec, TransmissionOver};
 
 const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 30.0;
@@ -59,9 +60,13 @@ pub fn drawing_svg(record: &Record, candidate: Option<&Candidate>) -> String {
 
     let footer = top + height + 26.0;
     canvas.scale_bar(Spot::new(MARGIN, footer), &view, 0.25 * main_width, &words::unit_suffix(record));
-    let is_motion = record.problem.resolved.task.body.is_some();
-    legend(&mut canvas, footer, candidate.is_some(), is_motion);
-    let bottom = caption(&mut canvas, record, candidate, &scene, footer + 34.0);
+    let task = &record.problem.resolved.task;
+    legend(&mut canvas, footer, candidate.is_some(), task);
+    let mut bottom = caption(&mut canvas, record, candidate, &scene, footer + 34.0);
+    if let Some(candidate) = candidate {
+        let area = Area { x: MARGIN, y: bottom + 12.0, width: WIDTH - 2.0 * MARGIN, height: 0.0 };
+        bottom += function::charts(&mut canvas, record, candidate, area).map_or(0.0, |height| 12.0 + height);
+    }
     let description = candidate.map_or("the target alone".to_owned(), |c| figures(record, c).join("; "));
     canvas.document(WIDTH, bottom + 18.0, &format!("{title}, {}", standing(record, candidate)), &description)
 }
@@ -129,11 +134,16 @@ fn enlarged(
 }
 
 /// Draws the legend of the marks, from the right.
-fn legend(canvas: &mut Canvas, y: f64, with_curve: bool, of_motion: bool) {
+fn legend(canvas: &mut Canvas, y: f64, with_curve: bool, task: &TaskSpec) {
+    let (of_motion, of_function) = (task.table() == "task.motion", task.is_function());
     let text = font(12, palette::INK);
     let mut x = WIDTH - MARGIN;
     if with_curve {
-        let curve = if of_motion { "curve of its point" } else { "coupler curve" };
+        let curve = match task.table() {
+            "task.motion" => "curve of its point",
+            "task.function" => "way of the follower's pin",
+            _ => "coupler curve",
+        };
         x -= text_width(curve, 12.0);
         canvas.text(Spot::new(x, y), Anchor::Start, &text, curve);
         let line = stroke(palette::CURVE, 2.4) + ROUND_ENDS;
@@ -156,8 +166,12 @@ fn legend(canvas: &mut Canvas, y: f64, with_curve: bool, of_motion: bool) {
         }
         frame("body wanted", true);
     }
-    let first = if of_motion { "pose 0" } else { "target point 0" };
-    let marks = [("target", "none", 4.6), (first, palette::TARGET, 5.4)];
+    let first = match (of_motion, of_function) {
+        (true, _) => "pose 0",
+        (_, true) => "pair 0",
+        _ => "target point 0",
+    };
+    let marks = [(if of_function { "pairs" } else { "target" }, "none", 4.6), (first, palette::TARGET, 5.4)];
     // The ring of a pose is at the origin of its frame.
     for (label, fill, radius) in marks.into_iter().skip(usize::from(of_motion)) {
         x -= text_width(label, 12.0);
@@ -170,13 +184,16 @@ fn legend(canvas: &mut Canvas, y: f64, with_curve: bool, of_motion: bool) {
 
 /// Returns the figures in words: errors, then the linkage.
 fn figures(record: &Record, candidate: &Candidate) -> [String; 2] {
-    let (unit, noun) = (words::unit_suffix(record), record.problem.resolved.task.noun());
+    let (unit, noun) = (words::error_unit(record), record.problem.resolved.task.noun());
     let (error, transmission) = (&candidate.error, &candidate.transmission_deg);
-    let more = words::angle_errors(candidate)
-        .unwrap_or_else(|| format!("rms to the curve {}{unit}", significant(error.to_curve.rms, 4)));
+    let more = match words::angle_errors(candidate) {
+        Some(angle) => format!(", {angle}"),
+        None if error.output.is_some() => String::new(),
+        None => format!(", rms to the curve {}{unit}", significant(error.to_curve.rms, 4)),
+    };
     [
         format!(
-            "rms error {}{unit}, largest {}{unit} at {noun} {}, {more}",
+            "rms error {}{unit}, largest {}{unit} at {noun} {}{more}",
             significant(error.rms, 4),
             significant(error.max, 4),
             error.max_at,
@@ -217,6 +234,7 @@ fn caption(
     } else {
         lines.push("no linkage to draw".to_owned());
     }
+    lines.extend(candidate.and_then(words::offsets).map(|said| capitalised(&said)));
     lines.extend(candidate.map(beside::warnings).filter(|text| !text.is_empty()));
     let y = |i: usize| top + 19.0 * i as f64;
     lines.iter().enumerate().for_each(|(i, text)| line(canvas, y(i), palette::INK, text));

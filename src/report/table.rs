@@ -9,8 +9,8 @@ use super::{price, words};
 use crate::mechanism::FourBar;
 use crate::mechanism::Unit;
 use crate::record::{AngleErrorRecord, Candidate, ErrorRecord, Record};
-use crate::task::Defect;
 use crate::task::spec::{Measure, TaskSpec};
+use crate::task::{Defect, Sense};
 
 /// The largest number of candidates whose distances from the given points are stated.
 const RAW_NAMED: usize = 3;
@@ -23,8 +23,11 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
     if record.candidates.is_empty() {
         out.push_str("  No candidate was found.\n");
     } else {
-        let of_motion = record.problem.resolved.task.body.is_some();
-        out.push_str(&if of_motion { rows_of_motion(record, colour) } else { rows(record, colour) });
+        out.push_str(&match record.problem.resolved.task.table() {
+            "task.motion" => rows_of_motion(record, colour),
+            "task.function" => rows_of_function(record, colour),
+            _ => rows(record, colour),
+        });
         out.push_str(&notes(record));
         out.push_str(&beside::lines(record));
         out.push_str(&best(record));
@@ -54,9 +57,12 @@ pub(super) fn heading(record: &Record, colour: Colour) -> String {
 /// Returns a text such as `18 points, size 1.082 m, prescribed timing, offset free, closed`.
 pub(super) fn facts(record: &Record) -> String {
     let path = &record.problem.resolved.task;
-    let mut facts = vec![count(path.points.len(), path.noun())];
+    let mut facts = vec![count(path.len(), path.noun())];
     facts.extend(without_angle(path));
-    if let Ok(task) = path.to_task() {
+    facts.extend(ranges(path));
+    if let Ok(task) = path.to_task()
+        && !path.is_function()
+    {
         facts.push(format!("size {}{}", brief(task.size(), 4), words::unit_suffix(record)));
     }
     facts.push(words::timing(record).to_owned());
@@ -78,6 +84,21 @@ pub(super) fn facts(record: &Record) -> String {
 fn without_angle(task: &TaskSpec) -> Option<String> {
     let without = task.body.as_ref()?.angle_deg.iter().filter(|angle| angle.is_none()).count();
     (without > 0).then(|| format!("{} of them without an angle", grouped(without as u64)))
+}
+
+/// Returns how far the links of a function turn: `log10(x) over 1 to 2, crank 60°, follower 90°`.
+fn ranges(task: &TaskSpec) -> Option<String> {
+    let output = task.output.as_ref()?;
+    let range = |angles: &mut dyn Iterator<Item = f64>| {
+        let (low, high) = angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(a), h.max(a)));
+        brief(high - low, 5)
+    };
+    let input = range(&mut task.timing.iter().flat_map(|timing| timing.crank_deg.iter().copied()));
+    let follower = range(&mut task.body.iter().flat_map(|body| body.angle_deg.iter().flatten().copied()));
+    let formula = output.of.as_ref().map_or(String::new(), |of| {
+        format!("{} over {} to {}, ", clean(&of.formula), brief(of.over[0], 5), brief(of.over[1], 5))
+    });
+    Some(format!("{formula}crank {input}°, follower {follower}°"))
 }
 
 pub(super) fn count(n: usize, noun: &str) -> String {
@@ -157,6 +178,40 @@ fn rows_of_motion(record: &Record, colour: Colour) -> String {
     grid.render(colour)
 }
 
+/// Returns the rows of a function: the errors of the output in degrees, and the angles from which both links start.
+fn rows_of_function(record: &Record, colour: Colour) -> String {
+    let ranks = words::minimised_in(record);
+    let transmission = |c: &Candidate| {
+        let (worst, over) = (c.transmission_deg.worst, words::over(c.transmission_deg.over));
+        format!("{}° {over:<5}", significant(worst, 3))
+    };
+    let size = record.problem.resolved.task.to_task().map_or(1.0, |task| task.error_size());
+    let error = |value: f64, digits| significant(value, if value < EXACT * size { 1 } else { digits });
+    let degrees = |value: f64| plain(error(value, 4) + "°");
+    let from = |deg: Option<f64>| plain(deg.map_or(NO_NUMBER.to_owned(), |deg| format!("{deg:.2}°")));
+    let objective = |c: &Candidate| if ranks.is_some() { c.error.objective } else { c.error.sum_sq };
+    let grid = Grid::of(
+        &record.candidates,
+        &[
+            (Right, "#", &|c| (c.rank.to_string(), Ink::Strong)),
+            (Right, ranks.as_ref().map_or("sum of sq", |(head, _)| head), &|c| {
+                let value = objective(c);
+                plain(significant(value, if value < EXACT * size * size * EXACT { 1 } else { 5 }))
+            }),
+            (Right, "rms", &|c| degrees(c.error.rms)),
+            (Right, "max", &|c| degrees(c.error.max)),
+            (Right, "at", &|c| plain(worst_at(record, c).to_string())),
+            (Right, "crank", &|c| from(c.input_offset_deg)),
+            (Right, "follower", &|c| from(c.output_offset_deg)),
+            (Left, "type", &|c| plain(c.linkage_type.name())),
+            (Right, "transm.", &|c| plain(transmission(c))),
+            (Right, "ratio", &|c| plain(significant(c.link_ratio, 3))),
+            (Left, "verdict", &|c| verdict(shortened(&words::verdict(record, c), 18), c.accepted)),
+        ],
+    );
+    grid.render(colour)
+}
+
 /// Returns the point that decides the rank: that of the largest error, or of the largest in parts of the tolerances if
 /// these are minimised.
 pub(super) fn worst_at(record: &Record, candidate: &Candidate) -> usize {
@@ -201,6 +256,11 @@ fn notes(record: &Record) -> String {
 
 /// Returns the meaning of the columns but the objective and the ratio.
 fn columns(record: &Record) -> &'static str {
+    if record.problem.resolved.task.is_function() {
+        return "rms, max: errors of the follower's angle, degrees, at which pair (from 0) the largest. crank, follower: \
+                their angles from the line A-B at an input and an output of 0. transm.: the worst transmission angle, from \
+                0 to 90°, over the crank's full turn (cycle) or between the pairs (used).";
+    }
     if record.problem.resolved.task.body.is_some() {
         return "rms, max: errors of the place, at which pose (from 0) the largest. angle, max: rms and largest error \
                 of the body's angle, degrees. transm.: the worst transmission angle, from 0 to 90°, over the crank's \
@@ -238,7 +298,16 @@ pub(super) fn against_raw(record: &Record) -> Option<String> {
 fn best(record: &Record) -> String {
     let Some(candidate) = record.candidates.first() else { return String::new() };
     let motion = motion(candidate).map_or(String::new(), |motion| format!(": {motion}"));
+    let follower = follower_from(candidate).map_or(String::new(), |said| format!("; {said}"));
+    let motion = motion + &follower;
     format!("\n  Best linkage (#{}){motion}\n{}", candidate.rank, linkage_toml(&candidate.linkage))
+}
+
+/// Returns where the follower of a function starts: `follower from 61.5°, counter-clockwise as its outputs rise`.
+fn follower_from(candidate: &Candidate) -> Option<String> {
+    let from = candidate.output_offset_deg? + candidate.linkage.ground_angle().to_degrees();
+    let way = if candidate.sense? == Sense::Opposite { "clockwise" } else { "counter-clockwise" };
+    Some(format!("follower from {}°, {way} as outputs rise", brief(from, 5)))
 }
 
 /// Returns the motion of the crank: `crank from 31.102° to 371.1°, counter-clockwise`, `crank from 31.1° to 141°,
@@ -327,18 +396,18 @@ pub fn batch_summary(files: &[BatchRow<'_>], colour: Colour) -> String {
     let figure = |file: &BatchRow<'_>, of: fn(&ErrorRecord) -> f64, digits| {
         plain(file.best().map_or(String::new(), |error| significant(of(error), digits)))
     };
-    let kinds =
-        || files.iter().filter_map(|file| Some(file.outcome.ok()?.problem.resolved.task.body.is_some()));
-    let noun = match (kinds().any(|of_motion| of_motion), kinds().any(|of_motion| !of_motion)) {
-        (true, true) => "targets",
-        (true, false) => "poses",
-        (false, _) => "points",
+    let mut nouns = files.iter().filter_map(|file| Some(file.outcome.ok()?.problem.resolved.task.noun()));
+    let noun = match nouns.next() {
+        Some(first) if nouns.any(|noun| noun != first) => "targets",
+        Some("pose") => "poses",
+        Some("pair") => "pairs",
+        _ => "points",
     };
     let grid = Grid::of(
         files,
         &[
             (Left, "problem", &|file| plain(shortened(&clean(file.name), 30))),
-            (Right, noun, &|file| ran(file, &|r| grouped(r.problem.resolved.task.points.len() as u64))),
+            (Right, noun, &|file| ran(file, &|r| grouped(r.problem.resolved.task.len() as u64))),
             (Right, "best sum of sq", &|file| figure(file, |e| e.sum_sq, 6)),
             (Right, "rms", &|file| figure(file, |e| e.rms, 4)),
             (Right, "max", &|file| figure(file, |e| e.max, 4)),

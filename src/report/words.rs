@@ -6,7 +6,7 @@ use crate::mechanism::Unit;
 use crate::record::{Candidate, Figure, Pick, Reason, Record, Requirement};
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::{BodySpec, Measure, TaskSpec, TransmissionOver};
-use crate::task::{AngleOffset, Defect};
+use crate::task::{AngleOffset, Defect, Sense};
 
 /// An objection: one reason why a candidate is not accepted.
 pub(super) struct Objection {
@@ -191,6 +191,7 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
     let (rank, noun, point) = (best.rank, record.problem.resolved.task.noun(), worst.point);
     let (an_error, unit) = match worst.part {
         Part::Place => ("an error", unit_suffix(record)),
+        Part::Angle if record.problem.resolved.task.is_function() => ("an error", "°".to_owned()),
         Part::Angle => ("an angle error", "°".to_owned()),
     };
     let [error, allowed, excess] =
@@ -225,22 +226,30 @@ fn of_tolerance(record: &Record, candidate: &Candidate, part: Part) -> Option<Ob
     let noun = record.problem.resolved.task.noun();
     let sentence = match part {
         Part::Place => format!("error {shown} at {noun} {point}, tolerance {allowed}"),
+        Part::Angle if record.problem.resolved.task.is_function() => {
+            format!("error {shown}° at {noun} {point}, tolerance {allowed}°")
+        }
         Part::Angle => format!("angle error {shown}° at {noun} {point}, tolerance {allowed}°"),
     };
     let key = part.tolerance().definition().short.to_owned();
     (error - tolerance > 0.0).then_some(Objection { key, sentence })
 }
 
-/// Returns the objective if it is not the plain sum of squares: the heading of its column and a sentence on it. `unit`
-/// follows lengths.
+/// Returns the unit of errors: that of lengths, and of a function degrees.
+pub(super) fn error_unit(record: &Record) -> String {
+    if record.problem.resolved.task.is_function() { "°".to_owned() } else { unit_suffix(record) }
+}
+
+/// Returns the objective if it is not the plain sum of squares: the heading of its column and a sentence on it. `noun` is
+/// the word for a target, `unit` follows lengths.
 pub(super) fn minimised(
     measure: Measure,
-    body: Option<&BodySpec>,
+    (body, noun): (Option<&BodySpec>, &str),
     unit: &str,
 ) -> Option<(&'static str, String)> {
-    let Some(body) = body else {
+    let Some(body) = body.filter(|_| noun != "pair") else {
         let (head, sentence) = minimised_in_a_path(measure)?;
-        return Some((head, sentence.to_owned()));
+        return Some((head, sentence.replace("point", noun)));
     };
     let weight = format!("angle_weight = {}{unit}", brief(body.angle_weight, 4));
     let sum = |each: &str| {
@@ -273,7 +282,7 @@ pub(super) fn minimised(
 /// Returns the objective of a record as [`minimised`] does.
 pub(super) fn minimised_in(record: &Record) -> Option<(&'static str, String)> {
     let spec = &record.problem.resolved;
-    minimised(spec.measure(), spec.task.body.as_ref(), &unit_suffix(record))
+    minimised(spec.measure(), (spec.task.body.as_ref(), spec.task.noun()), &unit_suffix(record))
 }
 
 fn minimised_in_a_path(measure: Measure) -> Option<(&'static str, &'static str)> {
@@ -292,6 +301,26 @@ fn minimised_in_a_path(measure: Measure) -> Option<(&'static str, &'static str)>
             "deviation: the largest error in parts of its point's tolerance, which was minimised and ranks; 1 is just met.",
         )),
     }
+}
+
+/// Returns the name of a sense in files.
+pub(super) fn sense(sense: Sense) -> &'static str {
+    match sense {
+        Sense::Any => "any",
+        Sense::Same => "same",
+        Sense::Opposite => "opposite",
+    }
+}
+
+/// Returns the starting angles of a function's links: `crank from 31.8°, follower from 61.5°, in the same sense`.
+pub(super) fn offsets(candidate: &Candidate) -> Option<String> {
+    let [input, output] =
+        [candidate.input_offset_deg?, candidate.output_offset_deg?].map(|deg| significant(deg, 6));
+    let sense = match candidate.sense? {
+        Sense::Opposite => "opposite senses",
+        Sense::Same | Sense::Any => "the same sense",
+    };
+    Some(format!("from the line A-B, the crank from {input}° and the follower from {output}°, in {sense}"))
 }
 
 /// Returns the errors of the body's angle in a motion: `angle error 0.31° rms, largest 0.8° at pose 3`.
@@ -316,8 +345,13 @@ pub(super) fn fewer(record: &Record) -> Option<String> {
     }
     let accepted = record.candidates.iter().any(|c| c.accepted);
     let mut text = format!("{listed} of the {asked} candidates that were asked for: ");
-    let is_motion = record.problem.resolved.task.body.is_some();
+    let task = &record.problem.resolved.task;
+    let (is_motion, is_function) = (task.table() == "task.motion", task.is_function());
     text.push_str(match (record.method.used == ["continuation"], accepted) {
+        (false, true) if is_function => {
+            "whatever else the search judged is one of these again, or is not accepted."
+        }
+        (false, false) if is_function => "whatever else the search judged is one of these again.",
         (false, true) if is_motion => {
             "whatever else the search judged takes the body the way of one of these, or is not accepted."
         }
@@ -432,6 +466,15 @@ pub(super) fn without_advice(record: &Record) -> Option<&'static str> {
 
 /// Returns the timing of the target.
 pub(super) fn timing(record: &Record) -> &'static str {
+    if let Some(output) = &record.problem.resolved.task.output {
+        let input = record.problem.resolved.task.timing.as_ref().map(|timing| timing.offset);
+        return match (input == Some(AngleOffset::Ground), output.offset == AngleOffset::Ground) {
+            (false, false) => "both offsets free",
+            (true, false) => "inputs from the line A-B, outputs' offset free",
+            (false, true) => "inputs' offset free, outputs from the line A-B",
+            (true, true) => "both from the line A-B",
+        };
+    }
     match record.problem.resolved.task.timing.as_ref().map(|timing| timing.offset) {
         None => "free timing",
         Some(AngleOffset::Free) => "prescribed timing, offset free",

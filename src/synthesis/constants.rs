@@ -62,6 +62,9 @@ pub mod multistart {
     pub const SHORT: usize = 8;
     /// Starts fitted to convergence.
     pub const LONG: usize = 3;
+    /// The same of the starts that the task suggests.
+    pub const SUGGESTED_SHORT: usize = 32;
+    pub const SUGGESTED_LONG: usize = 8;
     /// The effort of a short fit.
     pub const SHORT_FIT: Effort = Effort::of(24, 2);
     /// The effort of a long fit.
@@ -74,6 +77,8 @@ pub mod multistart {
 pub mod rounds {
     /// Rounds that run in parallel before any is read: the same number for any number of threads.
     pub const BATCH: u64 = 8;
+    /// The same of a function, whose starts are better.
+    pub const FUNCTION_BATCH: u64 = 2;
     /// Least number of batches, so that rarer answers have their chance, and batches without a new answer that end a
     /// search for further distinct answers.
     pub const LEAST_BATCHES: u64 = 3;

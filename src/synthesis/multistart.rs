@@ -9,7 +9,7 @@ pub use super::constants::free::MIDDLE_FIT;
 pub use super::constants::multistart::{LONG_FIT, SHORT_FIT};
 
 use super::Context;
-use super::constants::multistart::{LONG, SCREEN, SETTLING, SHORT};
+use super::constants::multistart::{LONG, SCREEN, SETTLING, SHORT, SUGGESTED_LONG, SUGGESTED_SHORT};
 use super::polish::reserve;
 use super::starts::Starts;
 use crate::judge::assess::assess_on_curve;
@@ -54,7 +54,7 @@ fn options(problem: &Problem, effort: Effort, max_evaluations: u64) -> LmOptions
         exact_cost: nothing_left * exact_cost(problem),
         feasibility: 1e-9 * task.size(),
         // A mean error above a fifth of the size after half of the steps is hopeless.
-        hopeless_cost: 0.04 * task.weights().iter().sum::<f64>() * task.size().powi(2),
+        hopeless_cost: 0.04 * task.weights().iter().sum::<f64>() * task.error_size().powi(2),
     }
 }
 
@@ -120,16 +120,24 @@ pub fn round(context: Context<'_>, starts: &Starts<'_>, index: u64, allowance: u
     let mut outcome = RoundOutcome::default();
     let mut stream = stream(problem.spec().solve.seed, index);
     let mut screened: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
+    // The first round takes those that the task suggests.
+    let mut suggested = if index == 0 { starts.suggested() } else { Vec::new() }.into_iter();
+    let suggests = suggested.len() > 0;
+    let (short, long) = if suggests { (SUGGESTED_SHORT, SUGGESTED_LONG) } else { (SHORT, LONG) };
     while outcome.draws < SCREEN as u64 && !spender.is_at_its_end() {
+        let next = if suggests { suggested.next() } else { starts.draw(&mut stream) };
+        if next.is_none() && suggests {
+            break;
+        }
         outcome.draws += 1;
-        let Some(mut start) = starts.draw(&mut stream) else { continue };
+        let Some(mut start) = next else { continue };
         spender.spend(problem, 1);
         screened.extend(promise(problem, &mut start).map(|promise| (promise, start)));
     }
-    by_merit(&mut screened, SHORT);
+    by_merit(&mut screened, short);
     let mut fitted: Vec<(f64, Start)> =
         screened.into_iter().filter_map(|start| spender.fit_or_keep(start, SHORT_FIT)).collect();
-    by_merit(&mut fitted, LONG);
+    by_merit(&mut fitted, long);
     let judging = context.judging();
     for start in fitted {
         let end = spender.fit_or_keep(start, LONG_FIT).filter(|_| judging.may_go_on());
@@ -177,7 +185,7 @@ pub(super) fn fit_and_judge<S: Send>(
 pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     let task = problem.task();
     let weight: f64 = task.weights().iter().sum();
-    let scale = weight * task.size().powi(2);
+    let scale = weight * task.error_size().powi(2);
     let held = &mut start.positions;
     if !held.is_empty() && !PathFit::new(problem, start.setting).settle(&start.design, held) {
         return None;
@@ -324,9 +332,9 @@ fn judged_with(problem: &Problem, end: &Start, to_curve: Option<CurveErrorRecord
         let written = problem.spec().task.timing.as_ref()?;
         debug_assert_eq!(written.crank_deg.len(), crank_angles.len());
         let crank_deg: Vec<f64> =
-            written.crank_deg.iter().map(|deg| base + end.setting.direction * deg).collect();
+            written.crank_deg.iter().map(|deg| base + problem.run(end.setting.direction) * deg).collect();
         let assemblies = vec![end.setting.assembly; crank_deg.len()];
-        let frame = frame_of(problem, &linkage, &crank_deg);
+        let frame = frame_of(problem, &linkage, &crank_deg, end.setting.direction);
         return assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), frame, to_curve);
     }
     let assemblies = end.positions.iter().map(|[e, u]| assembly_of(&shape, *e, *u)).collect::<Vec<_>>();
@@ -340,14 +348,16 @@ fn judged_with(problem: &Problem, end: &Start, to_curve: Option<CurveErrorRecord
     assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), frame, to_curve)
 }
 
-/// Returns the frame of a body at prescribed crank angles, in degrees, where deviations count one by one; `None` where the
-/// one of the least squared errors is wanted.
-fn frame_of(problem: &Problem, linkage: &FourBar, crank_deg: &[f64]) -> Option<f64> {
+/// Returns the frame of a body, or of a function's outputs with this sign, at prescribed crank angles, in degrees, where
+/// deviations count one by one; `None` where the one of the least squared errors is wanted.
+fn frame_of(problem: &Problem, linkage: &FourBar, crank_deg: &[f64], sign: f64) -> Option<f64> {
     let (task, objective) = (problem.task(), problem.spec().solve.objective);
     let body = task.body().filter(|_| reserve(problem, 1000) > 0)?;
+    let sign = if problem.is_function() { sign } else { 1.0 };
     let apart = |(angle, deg): (&Option<f64>, &f64)| {
         let joints = linkage.position_with(deg.to_radians(), linkage.assembly()).joints()?;
-        Some((*angle)? - (joints.follower_pin - joints.crank_pin).arg())
+        let line = body.line([linkage.follower_pivot(), joints.crank_pin, joints.follower_pin]);
+        Some(sign * (*angle)? - line.arg())
     };
     let apart: Vec<Option<f64>> = body.angles.iter().zip(crank_deg).map(apart).collect();
     let largest = objective == Objective::MaxDeviation;

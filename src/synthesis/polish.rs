@@ -56,10 +56,11 @@ pub fn promising(problem: &Problem, candidate: &Candidate) -> bool {
 }
 
 /// Returns the tolerances by which deviations are measured: 1 if none are given. In a motion two a target: of the place,
-/// and of the angle as the length that it counts like; infinite where only the other one is limited.
+/// and of the angle as the length that it counts like; infinite where only the other one is limited. In a function one
+/// pair's: of its output, in degrees.
 fn measures(problem: &Problem) -> Vec<f64> {
     let task = problem.task();
-    let least = LEAST_TOLERANCE * task.size();
+    let least = LEAST_TOLERANCE * task.error_size();
     let inside = |t: f64| (t * (1.0 - TOLERANCE_MARGIN)).max(least);
     let Some(body) = task.body() else {
         return match task.tolerances() {
@@ -68,6 +69,10 @@ fn measures(problem: &Problem) -> Vec<f64> {
         };
     };
     let unless_given = if task.has_tolerances() { f64::INFINITY } else { 1.0 };
+    if problem.is_function() {
+        let each = |j: usize| body.tolerances.as_ref().map_or(1.0, |t| inside(body.angle_weight * t[j]));
+        return (0..task.len()).map(each).collect();
+    }
     let both = |j: usize| {
         let place = task.tolerances().map_or(unless_given, |tolerances| inside(tolerances[j]));
         let angle = body.tolerances.as_ref().map_or(unless_given, |t| inside(body.angle_weight * t[j]));

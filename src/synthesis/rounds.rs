@@ -1,9 +1,12 @@
 //! Multistart search for prescribed timing in the physical parameters: rounds ([`super::multistart`]) until `ROUND_HITS`
-//! different ones have reached the best answer and as many distinct answers as were asked for are known.
+//! different ones have reached the best answer and as many distinct answers as were asked for are known. Where exact
+//! answers form a family ([`super::family`]), several batches are searched and the best answers led to better transmission
+//! angles.
 
 use super::belief::{ROUND_HITS, SAME_OPTIMUM};
-use super::constants::rounds::{BATCH, KEPT, LEAST_BATCHES, QUIET_BATCHES};
+use super::constants::rounds::{BATCH, FUNCTION_BATCH, KEPT, LEAST_BATCHES, QUIET_BATCHES};
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
+use super::family::{climb, freedom};
 use super::multistart::{RoundOutcome, round};
 use super::polish::promising;
 use super::starts::Starts;
@@ -15,6 +18,10 @@ use crate::record::{Candidate, Repeats};
 struct Rounds<'a> {
     starts: Starts<'a>,
     exact: f64,
+    /// Rounds of a batch.
+    batch: u64,
+    /// The number of free parameters that are left when all targets are met.
+    freedom: usize,
     at: RoundsState,
 }
 
@@ -23,13 +30,23 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
     let problem = context.problem;
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().rounds.clone());
     let earlier = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best));
-    let mut search =
-        Rounds { starts: Starts::new(problem), exact: exact_cost(problem), at: earlier.unwrap_or_default() };
+    let is_function = problem.is_function();
+    let mut search = Rounds {
+        starts: Starts::new(problem),
+        exact: exact_cost(problem),
+        batch: if is_function { FUNCTION_BATCH } else { BATCH },
+        freedom: if is_function { freedom(problem) } else { 0 },
+        at: earlier.unwrap_or_default(),
+    };
     let reason = drive(context, allowance, &mut search);
-    let at = search.at;
+    let mut at = search.at;
+    if search.freedom > 0 {
+        let left = allowance.limit.saturating_sub(at.evaluations.objective);
+        at.evaluations += context.cost(climb(context, &mut at.found, left));
+    }
     let hits = at.hits as u64;
     Some(Found {
-        repeats: at.best.is_some().then(|| Repeats::new(at.batch * BATCH, hits, hits)),
+        repeats: at.best.is_some().then(|| Repeats::new(at.batch * search.batch, hits, hits)),
         candidates: at.found,
         evaluations: at.evaluations,
         reason,
@@ -76,8 +93,8 @@ impl Strategy for Rounds<'_> {
     }
 
     fn run(&mut self, context: Context<'_>, left: u64) -> (Self::Batch, bool) {
-        let run = |i, allowance| round(context, &self.starts, self.at.batch * BATCH + i, allowance);
-        in_parallel((left, BATCH), run, |round| round.evaluations.objective)
+        let run = |i, allowance| round(context, &self.starts, self.at.batch * self.batch + i, allowance);
+        in_parallel((left, self.batch), run, |round| round.evaluations.objective)
     }
 
     fn read(&mut self, context: Context<'_>, batch: Self::Batch) {

@@ -4,6 +4,7 @@
 //! p = s + (s2 + s3)/2, q = s + (s1 + s3)/2, l = s + (s1 + s2)/2 covers exactly the shapes whose shortest link
 //! is s and whose margin is positive. Phases of free timing follow the arc length of the target.
 
+use super::function_starts::FunctionStarts;
 use super::{Context, ellipse};
 use crate::mechanism::four_bar::mobility::{Mobility, grashof_margin, linkage_type};
 use crate::mechanism::{
@@ -35,6 +36,8 @@ pub struct Starts<'a> {
     pub(super) arc: Vec<f64>,
     /// The phases of the points on an ellipse, if the target is free, closed and nearly one ([`super::ellipse`]).
     ellipse: Option<Vec<f64>>,
+    /// Those of a function.
+    function: Option<FunctionStarts<'a>>,
     /// One design space per side of the coupler point.
     pub(super) spaces: Vec<(CouplerSide, DesignSpace)>,
 }
@@ -49,6 +52,7 @@ impl<'a> Starts<'a> {
             along.push(along[along.len() - 1] + (w[1] - w[0]).norm());
         }
         let mut whole = along[along.len() - 1];
+        let function = FunctionStarts::new(problem);
         if task.closed() && !task.repeats_first() {
             whole += (points[0] - points[points.len() - 1]).norm();
         }
@@ -59,6 +63,7 @@ impl<'a> Starts<'a> {
             ellipse: (task.closed() && matches!(task.timing(), Timing::Free))
                 .then(|| ellipse::phases(points))
                 .flatten(),
+            function,
             spaces: problem.sides().iter().map(|&side| (side, problem.space(side))).collect(),
         }
     }
@@ -86,8 +91,16 @@ impl<'a> Starts<'a> {
         Some(start_from(space, setting, &shape, positions))
     }
 
+    /// Returns the starts that the task itself suggests: of a function those of its linear equations.
+    pub(super) fn suggested(&self) -> Vec<Start> {
+        self.function.as_ref().map_or_else(Vec::new, FunctionStarts::of_grid)
+    }
+
     /// Draws one start; `None` if it cannot be assembled at every point.
     pub fn draw(&self, stream: &mut Stream) -> Option<Start> {
+        if let Some(function) = &self.function {
+            return function.draw(stream);
+        }
         let drawn = self.types[below(stream, self.types.len())];
         let assembly = if below(stream, 2) == 0 { AssemblyMode::Plus } else { AssemblyMode::Minus };
         let directions = self.problem.directions();

@@ -138,8 +138,7 @@ pub(super) fn fitted(
     let is_accepted = out.candidate.as_ref().is_some_and(|c| c.accepted);
     let deviations = reserve(tight, u64::MAX) > 0;
     let max = tight.spec().solve.objective == Objective::MaxDeviation;
-    let tolerances = tight.task().tolerances().unwrap_or_default();
-    let most = HOPELESS * tolerances.iter().copied().fold(0.0, f64::max);
+    let most = HOPELESS * tight.task().largest_tolerance().unwrap_or(f64::INFINITY);
     let is_hopeless = out.candidate.as_ref().is_some_and(|c| c.error.max > most);
     if deviations && (max || !(is_accepted || is_hopeless)) && !context.stopped() {
         let left = evaluations.saturating_sub(out.evaluations);

@@ -12,8 +12,8 @@
 //! | [`resampling`] | smoothing and resampling of digitised points into a target |
 //! | [`similarity`] | similarities that map the axes to themselves and renumberings of a path's points, of a whole problem |
 //! | [`spec`] | the problem as data: every key of a problem file with its default filled in |
-//! | `task_spec` | the task as data: a list of targets, written as `path` or as `motion` |
-//! | `targets` | the synthesis task: a list of targets for the coupler point and, in poses, for the angle of the body, with or without crank angles |
+//! | `task_spec` | the task as data: a list of targets, written as `path`, as `motion` or as `function` |
+//! | `targets` | the synthesis task: a list of targets for the coupler point and, in poses, for the angle of the body, or for the angle of the follower, with or without crank angles |
 
 mod builder;
 pub mod defect;
@@ -34,5 +34,5 @@ pub use defect::Defect;
 pub use problem::{Problem, Setting};
 pub(crate) use targets::corners;
 pub use targets::{
-    AngleOffset, Body, Return, SMALLEST_SIZE, Task, TaskError, TaskOptions, Timing, best_frame,
+    AngleOffset, Body, Link, Return, SMALLEST_SIZE, Sense, Task, TaskError, TaskOptions, Timing, best_frame,
 };

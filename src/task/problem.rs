@@ -30,7 +30,7 @@ pub struct Setting {
     /// The assembly sign t1 (prescribed timing).
     pub assembly: AssemblyMode,
     /// The direction of the crank. +1: the prescribed increments as written, -1: reversed. With free timing the sense
-    /// in which starts run.
+    /// in which starts run; in a function the sign of the outputs.
     pub direction: f64,
     /// The side t2 of the coupler point, used if d and e are coordinates of the design.
     pub side: CouplerSide,
@@ -84,6 +84,9 @@ impl Problem {
     /// As [`Task::new`]; and if the largest deviation is minimised and a tolerance is zero.
     pub fn new(spec: ProblemSpec) -> Result<Self, TaskError> {
         let mut task = spec.task.to_task()?;
+        if task.is_function() {
+            task = task.of_size(spec.design.function_ground());
+        }
         if spec.solve.objective == Objective::MaxDeviation {
             task = measured_by_tolerances(task)?;
         }
@@ -152,6 +155,11 @@ impl Problem {
         matches!(self.task.timing(), Timing::Prescribed { offset: AngleOffset::Free, .. })
     }
 
+    /// Returns whether the task is a function.
+    pub fn is_function(&self) -> bool {
+        self.task.is_function()
+    }
+
     /// Returns whether the frame of a body, its angle from the coupler's direction, is an unknown of the design vector: in a
     /// motion with free timing.
     pub fn frame_is_free(&self) -> bool {
@@ -174,8 +182,12 @@ impl Problem {
         Requirements::new(&self.spec.require, space.derived(), self.task.size())
     }
 
-    /// Returns the directions in which prescribed increments may be run, +1 first; for free timing the allowed senses.
+    /// Returns the directions in which prescribed increments may be run, +1 first; for free timing the allowed senses; of a
+    /// function, whose inputs run as they are written, the signs of its outputs.
     pub fn directions(&self) -> &'static [f64] {
+        if let Some(body) = self.task.body().filter(|_| self.is_function()) {
+            return body.signs();
+        }
         match (self.task.timing(), self.spec.require.direction) {
             (Timing::Prescribed { offset: AngleOffset::Fixed | AngleOffset::Ground, .. }, _) => &[1.0],
             (_, DirectionPolicy::Any) => &[1.0, -1.0],
@@ -212,8 +224,14 @@ impl Problem {
         self.spec.require.circuit == OnePolicy::Any
     }
 
+    /// Returns the sign of the prescribed increments in a direction: those of a function run as they are written.
+    pub fn run(&self, direction: f64) -> f64 {
+        if self.is_function() { 1.0 } else { direction }
+    }
+
     /// Returns e^{i psi_j} of the prescribed angles in a direction; empty for free timing.
     pub fn phases(&self, direction: f64) -> Vec<Complex> {
+        let direction = self.run(direction);
         match self.task.timing() {
             Timing::Free => Vec::new(),
             Timing::Prescribed { crank_angles, .. } => {

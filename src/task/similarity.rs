@@ -182,7 +182,7 @@ impl ProblemSpec {
             *deviation *= by.scale;
         }
         path.tolerance.iter_mut().flatten().for_each(|tolerance| *tolerance *= by.scale);
-        if let Some(body) = &mut path.body {
+        if let Some(body) = path.body.as_mut().filter(|_| path.output.is_none()) {
             body.angle_weight *= by.scale;
             body.angle_deg.iter_mut().flatten().for_each(|angle| *angle = by.direction(*angle));
         }
@@ -245,7 +245,7 @@ impl ProblemSpec {
         let path = &mut spec.task;
         path.points.iter_mut().flatten().for_each(|x| *x = at(*x));
         path.tolerance.iter_mut().flatten().for_each(|x| *x = of_itself(*x));
-        if let Some(body) = &mut path.body {
+        if let Some(body) = path.body.as_mut().filter(|_| path.output.is_none()) {
             body.angle_weight = of_itself(body.angle_weight);
             // A radian has 64 degrees, roughly.
             body.angle_deg.iter_mut().flatten().for_each(|angle| *angle = rounded_to(*angle, 64.0 * grid));

@@ -12,7 +12,9 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::task::limits::Limits;
 pub use crate::task::requirement::{RequireSpec, TransmissionOver};
-pub use crate::task::task_spec::{BodySpec, RawPoints, TaskSpec, TimingSpec};
+pub use crate::task::task_spec::{
+    BodySpec, DEGREES, FormulaSpec, OutputSpec, RawPoints, TaskSpec, TimingSpec,
+};
 
 /// A problem with every default filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -94,7 +96,52 @@ pub const DEFAULT_REACH: f64 = 5.0;
 /// The least default length of a link, in sizes of the target.
 pub const DEFAULT_SHORTEST: f64 = 0.02;
 
+/// The default limits of crank, coupler and follower of a function, in lengths of the ground link.
+pub const FUNCTION_RATIOS: [f64; 2] = [0.1, 10.0];
+
 impl DesignSpec {
+    /// Returns the length of the ground link that a function is scaled to: |AB| of the pivots given, the greatest ground
+    /// given, or 1.
+    pub fn function_ground(&self) -> f64 {
+        let middle = |pivot: [Limits; 2]| pivot.map(|l| 0.5 * l.0 + 0.5 * l.1);
+        let apart = self.crank_pivot.map(middle).zip(self.follower_pivot.map(middle));
+        let apart = apart.map(|(a, b)| (b[0] - a[0]).hypot(b[1] - a[1])).filter(|apart| *apart > 0.0);
+        apart.or(self.ground.map(|l| l.1).filter(|most| *most > 0.0)).unwrap_or(1.0)
+    }
+
+    /// Fills in the defaults of a function: A in the origin, B to its right at the length of the ground link, the other
+    /// links in [0.1, 10] of it, and P in D.
+    fn resolve_function(&mut self) {
+        let fixed = |x: f64| Limits(x, x);
+        let ground = self.function_ground();
+        let polar = self.ground.is_some() || self.ground_angle_deg.is_some();
+        if !polar {
+            // The pivot that is not given lies beside the one that is.
+            let beside = |pivot: [Limits; 2], by: f64| {
+                let [x, y] = pivot;
+                let moved = |l: Limits| Limits(l.0 + by, l.1 + by);
+                [moved(x), y]
+            };
+            match (self.crank_pivot, self.follower_pivot) {
+                (None, Some(b)) => self.crank_pivot = Some(beside(b, -ground)),
+                (Some(a), None) => self.follower_pivot = Some(beside(a, ground)),
+                _ => {}
+            }
+        }
+        let a = *self.crank_pivot.get_or_insert([fixed(0.0), fixed(0.0)]);
+        if polar && self.follower_pivot.is_none() {
+            self.ground.get_or_insert(fixed(ground));
+            self.ground_angle_deg.get_or_insert(fixed(0.0));
+        } else {
+            self.follower_pivot.get_or_insert([Limits(a[0].0 + ground, a[0].1 + ground), a[1]]);
+        }
+        let [low, high] = FUNCTION_RATIOS;
+        for key in [&mut self.a, &mut self.b, &mut self.c] {
+            key.get_or_insert(Limits(low * ground, high * ground));
+        }
+        self.e = Some(fixed(0.0));
+    }
+
     /// Returns whether a length is bounded: a link, a distance of the coupler point or one of its coordinates.
     pub fn bounds_a_length(&self) -> bool {
         let DesignSpec { a, b, c, d, e, ground, coupler_x, coupler_y, .. } = self;
@@ -107,6 +154,9 @@ impl DesignSpec {
     /// A quantity that other given keys determine gets no default of its own: B if `ground` or `ground_angle_deg` is
     /// given, the ground if both pivots are, coupler_x and coupler_y if `d` or `e` is given.
     pub fn resolve(&mut self, task: &Task) {
+        if task.is_function() {
+            return self.resolve_function();
+        }
         let (size, centre) = (task.size(), task.centre());
         // No default allows coordinates that a linkage cannot have.
         let within = |low: f64, high: f64| Limits(low.max(-MAX_MAGNITUDE), high.min(MAX_MAGNITUDE));

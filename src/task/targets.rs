@@ -4,9 +4,11 @@
 //! A list of n targets is met by a linkage at positions (phi_j, t1_j). The structural error of the place of target j is
 //! T_j - P(phi_j, t1_j). A target may also give the angle theta_j of a body that is fixed to the coupler: its structural
 //! error is theta_j - (arg(D_j - C_j) + beta), within half a turn, where beta is the angle from the direction C -> D to the
-//! body's x axis (its frame). A list without such angles is a *path*, one with them a *motion*. With *prescribed timing* the crank angles are given (up to a common offset, from the x axis, or from
-//! the ground line A -> B); with *free timing* each is chosen to be nearest. This module uses `mechanism` and
-//! nothing else of the crate.
+//! body's x axis (its frame). A list without such angles is a *path*, one with them a *motion*. A *function* gives no
+//! places but the angles of the follower, at prescribed crank angles: its structural error is s theta_j - (arg(D_j - B) +
+//! beta), where s = +1 or -1 is the sense in which the follower turns and -beta its angle at an output of zero. With
+//! *prescribed timing* the crank angles are given (up to a common offset, from the x axis, or from the ground line A ->
+//! B); with *free timing* each is chosen to be nearest. This module uses `mechanism` and nothing else of the crate.
 
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{Complex, MAX_MAGNITUDE};
@@ -56,15 +58,63 @@ pub enum Return {
 /// number.
 pub const SMALLEST_SIZE: f64 = 1e-100;
 
-/// The angles of a body at the targets of a motion.
+/// The sense in which the follower turns while the crank turns as its angles are written.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sense {
+    /// Either.
+    #[default]
+    Any,
+    /// Output angles count counter-clockwise, as input angles do.
+    Same,
+    /// Output angles count clockwise.
+    Opposite,
+}
+
+impl Sense {
+    /// Returns the signs of the output angles that it allows: +1 counts them counter-clockwise.
+    pub fn signs(self) -> &'static [f64] {
+        match self {
+            Sense::Any => &[1.0, -1.0],
+            Sense::Same => &[1.0],
+            Sense::Opposite => &[-1.0],
+        }
+    }
+
+    /// Returns the sense of a sign.
+    pub fn of(sign: f64) -> Sense {
+        if sign < 0.0 { Sense::Opposite } else { Sense::Same }
+    }
+}
+
+/// The link whose angles are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Link {
+    /// The coupler, which carries a body.
+    Coupler,
+    /// The follower, whose angle is the output of a function.
+    Follower {
+        /// The reference of output angles: free, or the ground line A -> B.
+        offset: AngleOffset,
+        /// The sense in which they count.
+        sense: Sense,
+    },
+}
+
+/// The angles of a link at the targets: those of a body on the coupler in a motion, those of the follower in a function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// The angle of the body at each target, in radians; `None`: only the place counts there.
+    /// The angle at each target, in radians; `None`: only the place counts there.
     pub angles: Vec<Option<f64>>,
-    /// The length that an angle error of one radian counts like; positive.
+    /// The length that an angle error of one radian counts like; positive. In a function 180/pi, so that squared errors are
+    /// in degrees squared.
     pub angle_weight: f64,
     /// The largest angle error accepted at each target, in radians.
     pub tolerances: Option<Vec<f64>>,
+    /// The link.
+    pub link: Link,
 }
 
 /// Returns the mean direction of the angles `apart`, those of the body less those of the coupler.
@@ -84,6 +134,36 @@ pub fn best_frame(apart: &[Option<f64>], weights: &[f64]) -> f64 {
 }
 
 impl Body {
+    /// Returns the line of the link at joints B, C and D: C -> D of the coupler, B -> D of the follower.
+    pub fn line(&self, [pivot, crank_pin, follower_pin]: [Complex; 3]) -> Complex {
+        match self.link {
+            Link::Coupler => follower_pin - crank_pin,
+            Link::Follower { .. } => follower_pin - pivot,
+        }
+    }
+
+    /// Returns the senses in which the angles may count: +1 alone of a body.
+    pub fn signs(&self) -> &'static [f64] {
+        match self.link {
+            Link::Coupler => &[1.0],
+            Link::Follower { sense, .. } => sense.signs(),
+        }
+    }
+
+    /// Returns the frame that the ground's direction (radians) determines: of outputs that count from the ground line.
+    pub fn given_frame(&self, ground_angle: f64) -> Option<f64> {
+        match self.link {
+            Link::Follower { offset: AngleOffset::Ground, .. } => Some(wrapped(-ground_angle)),
+            Link::Follower { .. } | Link::Coupler => None,
+        }
+    }
+
+    /// Returns the difference between the least and the greatest angle, in radians.
+    fn range(&self) -> f64 {
+        let given = || self.angles.iter().flatten().copied();
+        given().fold(f64::NEG_INFINITY, f64::max) - given().fold(f64::INFINITY, f64::min)
+    }
+
     /// Returns the frame that suits the angles `apart`, those of the body less those of the coupler, best: the largest error
     /// is least, in parts of the tolerances if there are any; or, unless `largest` is asked for and if the tolerances can be
     /// met, the sum of squares within them is.
@@ -127,6 +207,7 @@ pub struct Task {
     timing: Timing,
     body: Option<Body>,
     size: f64,
+    error_size: f64,
     centre: Complex,
 }
 
@@ -154,6 +235,15 @@ pub enum TaskError {
     /// The length that an angle error of one radian counts like is not a positive number.
     #[error("angle_weight = {0}: it must be a length above 0")]
     AngleWeight(f64),
+    /// All outputs of a function are equal.
+    #[error("all outputs are equal: the follower would stand still")]
+    ConstantOutput,
+    /// All inputs of a function are equal.
+    #[error("all inputs are equal: the crank would stand still")]
+    ConstantInput,
+    /// A function has no crank angles.
+    #[error("a function needs a crank angle for each output")]
+    NoInput,
     /// All points in one place, within [`SMALLEST_SIZE`].
     #[error("all points are equal, or lie within {size:e} of each other", size = SMALLEST_SIZE)]
     NoExtent,
@@ -203,7 +293,7 @@ pub struct TaskOptions {
 
 /// Checks the angles of a body at `n` targets.
 fn check_body(body: &Body, n: usize) -> Result<(), TaskError> {
-    let Body { angles, angle_weight, tolerances } = body;
+    let Body { angles, angle_weight, tolerances, .. } = body;
     let same_length = |what, values: usize| {
         if values == n { Ok(()) } else { Err(TaskError::LengthMismatch { what, points: n, values }) }
     };
@@ -238,7 +328,8 @@ impl Task {
     /// # Errors
     /// [`TaskError`], by its variants.
     pub fn new(points: Vec<[f64; 2]>, timing: Timing, options: TaskOptions) -> Result<Self, TaskError> {
-        let n = points.len();
+        let follower = options.body.as_ref().filter(|body| matches!(body.link, Link::Follower { .. }));
+        let n = follower.map_or(points.len(), |body| body.angles.len());
         if n < 2 {
             return Err(TaskError::TooFewPoints(n));
         }
@@ -272,6 +363,9 @@ impl Task {
         if let Some(body) = &options.body {
             check_body(body, n)?;
         }
+        if let Some(body) = follower {
+            return Task::function(body.clone(), timing, options);
+        }
         let (low, high) = corners(&points);
         let mut size = f64::hypot(high[0] - low[0], high[1] - low[1]);
         if size < SMALLEST_SIZE {
@@ -300,8 +394,38 @@ impl Task {
             timing,
             body: options.body,
             size,
+            error_size: size,
             centre: Complex::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])),
         })
+    }
+
+    /// Creates the task of a function, whose lists have been checked: no places, and a linkage of the size 1.
+    fn function(body: Body, timing: Timing, options: TaskOptions) -> Result<Self, TaskError> {
+        let Timing::Prescribed { crank_angles, .. } = &timing else { return Err(TaskError::NoInput) };
+        if crank_angles.iter().all(|angle| *angle == crank_angles[0]) {
+            return Err(TaskError::ConstantInput);
+        }
+        let range = body.range();
+        if range <= SMALLEST_SIZE {
+            return Err(TaskError::ConstantOutput);
+        }
+        Ok(Task {
+            points: Vec::new(),
+            weights: options.weights.unwrap_or_else(|| vec![1.0; body.angles.len()]),
+            tolerances: None,
+            closed: false,
+            comes_back: Return::default(),
+            timing,
+            size: 1.0,
+            error_size: body.angle_weight * range,
+            body: Some(body),
+            centre: Complex::new(0.0, 0.0),
+        })
+    }
+
+    /// Returns the same function for linkages of this size: the length of their ground link.
+    pub(super) fn of_size(self, size: f64) -> Self {
+        Task { size, ..self }
     }
 
     /// Returns the same task with other weights, one positive number per point.
@@ -314,19 +438,19 @@ impl Task {
         Task { comes_back, ..self }
     }
 
-    /// Returns the target points.
+    /// Returns the target points; none of a function.
     pub fn points(&self) -> &[Complex] {
         &self.points
     }
 
-    /// Returns the number of points.
+    /// Returns the number of targets.
     pub fn len(&self) -> usize {
-        self.points.len()
+        self.weights.len()
     }
 
-    /// Returns whether there are no points: never, since a path has at least two.
+    /// Returns whether there are no targets: never, since a task has at least two.
     pub fn is_empty(&self) -> bool {
-        self.points.is_empty()
+        self.weights.is_empty()
     }
 
     /// Returns the positive weight of each point, 1 if none was given.
@@ -337,6 +461,16 @@ impl Task {
     /// Returns the largest error accepted at each point.
     pub fn tolerances(&self) -> Option<&[f64]> {
         self.tolerances.as_deref()
+    }
+
+    /// Returns the largest of the tolerances of the error: of the places, or in a function of the outputs, degrees.
+    pub fn largest_tolerance(&self) -> Option<f64> {
+        let of_output = || {
+            let output = self.body.as_ref().filter(|_| self.is_function())?;
+            Some(output.tolerances.as_ref()?.iter().map(|t| output.angle_weight * t).collect())
+        };
+        let all: Vec<f64> = self.tolerances.clone().or_else(of_output)?;
+        Some(all.into_iter().fold(0.0, f64::max))
     }
 
     /// Returns whether an error is limited at each target: of the place or of the body's angle.
@@ -362,14 +496,19 @@ impl Task {
 
     /// Returns whether the last target repeats the first.
     pub fn repeats_first(&self) -> bool {
-        let last = self.points.len() - 1;
+        let Some(last) = self.points.len().checked_sub(1) else { return false };
         let as_first = |body: &Body| body.angles[0] == body.angles[last];
         last > 1 && self.points[0] == self.points[last] && self.body.as_ref().is_none_or(as_first)
     }
 
-    /// Returns the angles of the body, in a motion.
+    /// Returns the angles of the body in a motion, those of the follower in a function.
     pub fn body(&self) -> Option<&Body> {
         self.body.as_ref()
+    }
+
+    /// Returns whether the task is a function: angles of the follower, and no places.
+    pub fn is_function(&self) -> bool {
+        self.body.as_ref().is_some_and(|body| matches!(body.link, Link::Follower { .. }))
     }
 
     /// Returns the timing.
@@ -378,9 +517,14 @@ impl Task {
     }
 
     /// Returns the diagonal of the target's bounding box; of a body that only turns, the length that an angle error of one
-    /// radian counts like. Positive.
+    /// radian counts like; of a function, the length of the ground link. Positive.
     pub fn size(&self) -> f64 {
         self.size
+    }
+
+    /// Returns the error that is as large as the target: its size; of a function the range of its outputs, in degrees.
+    pub fn error_size(&self) -> f64 {
+        self.error_size
     }
 
     /// Returns the centre of the target's bounding box.

@@ -1,10 +1,11 @@
-//! The task as data: a list of targets, written as `path` or as `motion`.
+//! The task as data: a list of targets, written as `path`, as `motion` or as `function`.
 //!
 //! A target says where the coupler point is to be and, in a motion, how the body is to lie there; the crank angles are
-//! given or free. Files and records call a list without body angles `path` and one with them `motion`.
+//! given or free. Files and records call a list without body angles `path` and one with them `motion`. A `function` has no
+//! places: its targets are angles of the follower at given crank angles.
 
 use crate::task::resampling::{resample, smooth};
-use crate::task::{AngleOffset, Body, Task, TaskError, TaskOptions, Timing};
+use crate::task::{AngleOffset, Body, Link, Sense, Task, TaskError, TaskOptions, Timing};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -13,7 +14,7 @@ use std::borrow::Cow;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(from = "Tables", into = "Tables")]
 pub struct TaskSpec {
-    /// The place of the coupler point at each target; in a motion, of the body's origin.
+    /// The place of the coupler point at each target; in a motion, of the body's origin; none in a function.
     pub points: Vec<[f64; 2]>,
     /// Whether the target is a closed curve.
     pub closed: bool,
@@ -25,11 +26,36 @@ pub struct TaskSpec {
     pub timing: Option<TimingSpec>,
     /// The points before they were smoothed or resampled; absent where `points` are what was given.
     pub raw: Option<RawPoints>,
-    /// The angles of a body; absent: the places alone are wanted.
+    /// The angles of a body, or of the follower in a function; absent: the places alone are wanted.
     pub body: Option<BodySpec>,
+    /// What the angles of a function's outputs mean; absent: the angles are those of a body on the coupler.
+    pub output: Option<OutputSpec>,
 }
 
-/// The angles of a body at the targets of a motion.
+/// What the output angles of a function mean.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputSpec {
+    /// Their reference: free, or the ground line.
+    pub offset: AngleOffset,
+    /// The sense in which they count.
+    pub sense: Sense,
+    /// The formula of which the pairs were taken; absent: they were given.
+    pub of: Option<FormulaSpec>,
+}
+
+/// A formula y = f(x) whose values are the outputs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FormulaSpec {
+    /// The formula in x.
+    pub formula: String,
+    /// The first and the last x.
+    pub over: [f64; 2],
+}
+
+/// The length that an angle error of one radian counts like in a function: squared errors are in degrees squared.
+pub const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+/// The angles of a body at the targets of a motion, or of the follower at those of a function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodySpec {
     /// The angle of the body at each target, degrees from the x axis, counter-clockwise positive; `None`: only the place
@@ -103,25 +129,63 @@ impl TaskSpec {
             body: self.body.as_ref().map(|body| Body {
                 angles: body.angle_deg.iter().map(|angle| angle.as_ref().map(radians)).collect(),
                 angle_weight: body.angle_weight,
+                link: self.output.as_ref().map_or(Link::Coupler, |output| Link::Follower {
+                    offset: output.offset,
+                    sense: output.sense,
+                }),
                 tolerances: body.tolerance_deg.as_ref().map(|list| list.iter().map(radians).collect()),
             }),
         };
         Task::new(self.points.clone(), timing, options)
     }
 
-    /// Returns the name of its table in a file: `task.path` or `task.motion`.
+    /// Returns whether it is a function.
+    pub fn is_function(&self) -> bool {
+        self.output.is_some()
+    }
+
+    /// Returns the input and the output of each pair of a function, degrees; none of another task.
+    pub fn pairs(&self) -> Vec<[f64; 2]> {
+        let outputs = self.body.iter().filter(|_| self.is_function()).flat_map(|body| &body.angle_deg);
+        let inputs = self.timing.iter().flat_map(|timing| &timing.crank_deg);
+        inputs.zip(outputs).filter_map(|(input, output)| Some([*input, (*output)?])).collect()
+    }
+
+    /// Returns the number of targets.
+    pub fn len(&self) -> usize {
+        match &self.body {
+            Some(body) if self.is_function() => body.angle_deg.len(),
+            _ => self.points.len(),
+        }
+    }
+
+    /// Returns whether there are no targets.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Returns the one of three that suits a path, a motion or a function.
+    fn by_kind<T>(&self, path: T, motion: T, function: T) -> T {
+        match (&self.body, &self.output) {
+            (None, _) => path,
+            (Some(_), None) => motion,
+            (Some(_), Some(_)) => function,
+        }
+    }
+
+    /// Returns the name of its table in a file: `task.path`, `task.motion` or `task.function`.
     pub fn table(&self) -> &'static str {
-        if self.body.is_some() { "task.motion" } else { "task.path" }
+        self.by_kind("task.path", "task.motion", "task.function")
     }
 
-    /// Returns the word for one of its targets: `point` or `pose`.
+    /// Returns the word for one of its targets: `point`, `pose` or `pair`.
     pub fn noun(&self) -> &'static str {
-        if self.body.is_some() { "pose" } else { "point" }
+        self.by_kind("point", "pose", "pair")
     }
 
-    /// Returns the key of its list of targets in a file: `task.path.points` or `task.motion.poses`.
+    /// Returns the key of its list of targets in a file, such as `task.path.points`.
     pub fn list_key(&self) -> &'static str {
-        if self.body.is_some() { "task.motion.poses" } else { "task.path.points" }
+        self.by_kind("task.path.points", "task.motion.poses", "task.function.output_deg")
     }
 }
 
@@ -133,6 +197,8 @@ enum Tables {
     Path(PathTable),
     /// Poses that a body is to pass.
     Motion(MotionTable),
+    /// Angles that the follower is to have.
+    Function(FunctionTable),
 }
 
 /// A path: points with their weights, tolerances and crank angles.
@@ -181,6 +247,71 @@ struct MotionTable {
     timing: Option<TimingSpec>,
 }
 
+/// A function: output angles of the follower at input angles of the crank, with their weights and tolerances.
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "FunctionSpec")]
+struct FunctionTable {
+    /// The angle of the crank at each pair, degrees, counter-clockwise positive.
+    input_deg: Vec<f64>,
+    /// The angle of the follower at each pair, degrees.
+    output_deg: Vec<f64>,
+    /// The reference of input angles: free, or the ground line.
+    input_offset: AngleOffset,
+    /// The reference of output angles, likewise.
+    output_offset: AngleOffset,
+    /// The sense in which output angles count.
+    sense: Sense,
+    /// One positive weight a pair; they enter the objective only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    weight: Option<Vec<f64>>,
+    /// The largest error of the output accepted, degrees, one a pair.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    tolerance_deg: Option<Vec<f64>>,
+    /// The formula of which the pairs were taken; absent: they were given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    of: Option<FormulaSpec>,
+}
+
+impl FunctionTable {
+    fn into_spec(self) -> TaskSpec {
+        let FunctionTable {
+            input_deg,
+            output_deg,
+            input_offset,
+            output_offset,
+            sense,
+            weight,
+            tolerance_deg,
+            of,
+        } = self;
+        let angle_deg = output_deg.into_iter().map(Some).collect();
+        TaskSpec {
+            weight,
+            timing: Some(TimingSpec { crank_deg: input_deg, offset: input_offset }),
+            body: Some(BodySpec { angle_deg, angle_weight: DEGREES, tolerance_deg }),
+            output: Some(OutputSpec { offset: output_offset, sense, of }),
+            ..TaskSpec::default()
+        }
+    }
+
+    fn of(spec: TaskSpec, output: OutputSpec) -> FunctionTable {
+        let (angles, tolerance_deg) =
+            spec.body.map_or((Vec::new(), None), |body| (body.angle_deg, body.tolerance_deg));
+        let (input_deg, input_offset) =
+            spec.timing.map_or((Vec::new(), AngleOffset::Free), |timing| (timing.crank_deg, timing.offset));
+        FunctionTable {
+            input_deg,
+            output_deg: angles.into_iter().map(|angle| angle.unwrap_or(f64::NAN)).collect(),
+            input_offset,
+            output_offset: output.offset,
+            sense: output.sense,
+            weight: spec.weight,
+            tolerance_deg,
+            of: output.of,
+        }
+    }
+}
+
 /// A pose as a row of two or three numbers.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
@@ -195,8 +326,9 @@ impl From<Tables> for TaskSpec {
     fn from(tables: Tables) -> TaskSpec {
         match tables {
             Tables::Path(PathTable { points, closed, weight, tolerance, timing, raw }) => {
-                TaskSpec { points, closed, weight, tolerance, timing, raw, body: None }
+                TaskSpec { points, closed, weight, tolerance, timing, raw, body: None, output: None }
             }
+            Tables::Function(function) => function.into_spec(),
             Tables::Motion(motion) => {
                 let split = |row: &PoseRow| match *row {
                     PoseRow::Pose([x, y, angle]) => ([x, y], Some(angle)),
@@ -206,15 +338,18 @@ impl From<Tables> for TaskSpec {
                 let MotionTable { closed, angle_weight, weight, tolerance, tolerance_deg, timing, .. } =
                     motion;
                 let body = Some(BodySpec { angle_deg, angle_weight, tolerance_deg });
-                TaskSpec { points, closed, weight, tolerance, timing, raw: None, body }
+                TaskSpec { points, closed, weight, tolerance, timing, raw: None, body, output: None }
             }
         }
     }
 }
 
 impl From<TaskSpec> for Tables {
-    fn from(spec: TaskSpec) -> Tables {
-        let TaskSpec { points, closed, weight, tolerance, timing, raw, body } = spec;
+    fn from(mut spec: TaskSpec) -> Tables {
+        if let Some(output) = spec.output.take() {
+            return Tables::Function(FunctionTable::of(spec, output));
+        }
+        let TaskSpec { points, closed, weight, tolerance, timing, raw, body, .. } = spec;
         match body {
             None => Tables::Path(PathTable { points, closed, weight, tolerance, timing, raw }),
             Some(BodySpec { angle_deg, angle_weight, tolerance_deg }) => {
@@ -246,6 +381,8 @@ struct Described {
     path: Option<PathTable>,
     /// Poses that a body is to pass.
     motion: Option<MotionTable>,
+    /// Angles that the follower is to have.
+    function: Option<FunctionTable>,
 }
 
 impl JsonSchema for TaskSpec {

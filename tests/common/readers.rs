@@ -241,6 +241,8 @@ pub fn entry(label: &str, record: &Record, index: usize) -> Option<Entry> {
         candidate: candidate.clone(),
         target_name: record.problem.name.clone(),
         target: path.points.clone(),
+        pairs: path.pairs(),
+        noun: path.noun(),
         body: path.body.clone(),
         unit: record.problem.unit,
         measure: record.problem.resolved.measure(),

@@ -13,6 +13,7 @@ mod conflicts;
 mod costs;
 mod derivatives;
 mod deviation;
+mod functions;
 mod invariance;
 mod ladder;
 mod motion;

@@ -208,7 +208,7 @@ pub enum NewTask {
     Path,
     /// A body passes poses: places with angles
     Motion,
-    /// An angle for each angle of the crank: not supported yet
+    /// An angle of the follower for each angle of the crank
     Function,
 }
 

@@ -29,6 +29,10 @@ pub fn run(options: &Check) -> Result<Ended, Ended> {
 
 fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+        if points_file::holds_pairs(path) {
+            let pairs = points_file::load_pairs(path)?;
+            return Ok((counted(pairs.points.len(), "pair"), pairs.warnings));
+        }
         let points = points_file::load(path)?;
         return Ok((targets(points.points.len(), points.angle_deg.as_deref()), points.warnings));
     }
@@ -70,7 +74,14 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
     let target = &file.spec.task;
     let timing = if target.timing.is_some() { "prescribed" } else { "free" };
     let angles = target.body.as_ref().map(|body| &body.angle_deg[..]);
-    let counted = targets(target.points.len(), angles);
+    let counted = match target.is_function() {
+        true => counted(target.len(), "pair"),
+        false => targets(target.points.len(), angles),
+    };
+    if target.is_function() {
+        let summary = format!("problem {}: a function of {counted}, runs as it is", file.name);
+        return Ok((summary, file.warnings));
+    }
     Ok((format!("problem {}: {counted}, {timing} timing, runs as it is", file.name), file.warnings))
 }
 

@@ -6,7 +6,7 @@ use crate::app::job::folder::{OutputFile, Replace, write_files};
 use crate::files::diagnostic::quoted;
 use crate::files::generator::FileKind;
 use crate::files::name;
-use crate::files::problem_file::{from_points_file, holds_poses, is_drawing, parse};
+use crate::files::problem_file::{from_points_file, holds_pairs, holds_poses, is_drawing, parse};
 use crate::files::problem_template::{TemplateTask, problem_template};
 use std::path::{Path, PathBuf};
 
@@ -42,10 +42,19 @@ pub fn run(options: &New) -> Result<Ended, Ended> {
 fn task_of(options: &New) -> Result<TemplateTask, Ended> {
     let from = options.from.as_deref();
     let poses = from.is_some_and(holds_poses);
+    let pairs = from.is_some_and(holds_pairs);
     match options.task {
-        Some(NewTask::Function) => {
-            Err(refuse("functions are not supported yet: write --task path or --task motion"))
-        }
+        None if pairs => Ok(TemplateTask::Function),
+        Some(NewTask::Function) => match from.filter(|path| !pairs && path.exists()) {
+            None => Ok(TemplateTask::Function),
+            Some(path) => Err(refuse(format!(
+                "{} has no pairs of a function: write them as a CSV with the columns input_deg,output_deg",
+                quoted(&path.display().to_string())
+            ))),
+        },
+        Some(NewTask::Path | NewTask::Motion) if pairs => Err(refuse(
+            "the file holds pairs of a function (a column input_deg): write --task function, or leave --task out",
+        )),
         Some(NewTask::Path) => Ok(TemplateTask::Path),
         None if !poses => Ok(TemplateTask::Path),
         None => Ok(TemplateTask::Motion),

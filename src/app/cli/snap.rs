@@ -98,7 +98,7 @@ fn write(options: &Options, record: &Record, begun: Instant, search_s: f64) -> R
     if let Some(path) = linkage_place(options) {
         let Some(best) = record.candidates.first() else { return Err(Ended::Bad) };
         let (name, unit) = (&record.problem.name, record.problem.unit);
-        let text = linkage_file::to_toml_with_body(name, unit, &best.linkage, best.frame_deg);
+        let text = linkage_file::to_toml_with(name, unit, &best.linkage, linkage_file::Carried::of(best));
         output(options).write(&[(path, FileKind::Linkage, text)])?;
         return Ok(path.to_path_buf());
     }

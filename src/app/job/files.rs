@@ -98,7 +98,12 @@ pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<
     ];
     for Listed { file, name, candidate } in listed(record) {
         let (named, unit) = (linkage_name(record, &name), record.problem.unit);
-        let toml = linkage_file::to_toml_with_body(&named, unit, &candidate.linkage, candidate.frame_deg);
+        let toml = linkage_file::to_toml_with(
+            &named,
+            unit,
+            &candidate.linkage,
+            linkage_file::Carried::of(candidate),
+        );
         files.push((format!("linkage-{file}.toml"), toml.into_bytes()));
         files.push((format!("curve-{file}.csv"), csv::candidate_curve_csv(candidate).into_bytes()));
     }

@@ -28,7 +28,7 @@ pub enum NotHere {
     )]
     Points(usize),
     /// The task is a motion.
-    #[error("the studio draws paths, and this task has poses: run it with `linkwright synth`")]
+    #[error("the studio draws paths, and this task has poses or pairs: run it with `linkwright synth`")]
     Poses,
     /// The problem is another one after it is converted to an edit and back.
     #[error("the studio cannot hold all of this problem ({0}): run it with `linkwright synth`")]

@@ -87,8 +87,12 @@ pub(super) fn archive(
     });
     add("drawing.svg", "the linkage over its path", svg::candidate_svg(record, index));
     let (problem_name, unit) = (&record.problem.name, record.problem.unit);
-    let linkage =
-        linkage_file::to_toml_with_body(problem_name, unit, &candidate.linkage, candidate.frame_deg);
+    let linkage = linkage_file::to_toml_with(
+        problem_name,
+        unit,
+        &candidate.linkage,
+        linkage_file::Carried::of(candidate),
+    );
     add("linkage.toml", "the linkage: linkwright analyze and export read it", linkage);
     if let Some(problem) = problem {
         add("problem.toml", "what was asked: linkwright synth and studio read it", problem);

@@ -28,13 +28,13 @@ pub enum NoProblems {
     },
     /// No answer is known of any problem.
     #[error(
-        "no problem in {0} has an [expect] table with best_known_sum_sq (of a path) or objective (of a motion)"
+        "no problem in {0} has an [expect] table with best_known_sum_sq (of a path) or objective (of a motion or a function)"
     )]
     NoneKnown(String),
     /// No answer is known of the problems that are asked for.
     #[error(
         "{names}: nothing to compare with; give a problem an [expect] table with best_known_sum_sq (of a path) or objective \
-         (of a motion)"
+         (of a motion or a function)"
     )]
     NoneKnownOf {
         /// The names of the problems.

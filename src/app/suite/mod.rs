@@ -2,7 +2,8 @@
 //! searches at equal evaluations and with published answers.
 //!
 //! Answers of a path are compared by their sum of squared distances, those of a motion by their objective, which counts
-//! the angles too. Population searches do not take poses: a motion has none beside it.
+//! the angles too, those of a function by theirs, in degrees squared. Population searches do not take poses or pairs: a motion
+//! and a function have none beside them.
 //!
 //! Every run is [`run`] on the problem of its file, with two changes: the seed, and a single candidate. Runs go one
 //! after the other on one thread, so that their times can be compared. All figures in a [`Suite`] are computed by the
@@ -58,7 +59,7 @@ impl Options {
     pub fn runs(&self, problems: &[ProblemFile]) -> u64 {
         let of = |known: Known| match known {
             Known::Path { .. } => self.seeds + POPULATIONS.len() as u64 * self.population_seeds(),
-            Known::Motion { .. } => self.seeds,
+            Known::Motion { .. } | Known::Function { .. } => self.seeds,
         };
         problems.iter().filter_map(|problem| known(problem).ok()).map(of).sum()
     }
@@ -114,9 +115,13 @@ fn known(file: &ProblemFile) -> Result<Known, &'static str> {
         return Ok(Known::Path { best_known_sum_sq, goal_sum_sq: goal.unwrap_or(best_known_sum_sq) });
     };
     match expect.and_then(|expect| expect.objective) {
+        Some(best_known_objective) if file.spec.task.is_function() => {
+            Ok(Known::Function { best_known_objective })
+        }
         Some(best_known_objective) => {
             Ok(Known::Motion { best_known_objective, angle_weight: body.angle_weight })
         }
+        None if file.spec.task.is_function() => Err("no objective under [expect]"),
         None if body.angle_deg.len() < FINITELY_MANY => Err(OF_A_FAMILY),
         None => Err("no objective under [expect]"),
     }
@@ -202,6 +207,9 @@ impl Runner<'_> {
         let (exact, populations) = match known {
             Known::Path { .. } => (exact_sum_sq(&problem), Ok(POPULATIONS)),
             Known::Motion { .. } => (exact_cost(&problem), Err("population searches do not take poses")),
+            Known::Function { .. } => {
+                (exact_cost(&problem), Err("population searches do not take functions"))
+            }
         };
         let bar = Bar { goal: known.goal(), best_known: known.best(), exact };
         let (search, best) = self.method(file, &problem, file.spec.clone(), options.seeds, &bar)?;
@@ -310,9 +318,9 @@ impl Runner<'_> {
     }
 }
 
-/// Returns the errors of an answer of a motion; `None` for one of a path.
+/// Returns the errors of an answer of a motion or of a function; `None` for one of a path.
 fn motion_errors(problem: &Problem, candidate: &Candidate) -> Option<MotionErrors> {
-    let angle = candidate.error.angle?;
+    let angle = candidate.error.of_link()?;
     // The sum of squares even where the largest deviation is minimised: what is known is one.
     let objective = searched(problem, candidate);
     Some(MotionErrors { objective, rms: candidate.error.rms, rms_deg: angle.rms_deg })

@@ -11,6 +11,8 @@ use crate::mechanism::{
     AssemblyMode, CouplerSide, FourBar, Linkage, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, Unit,
     VectorLoop,
 };
+use crate::record::Candidate;
+use crate::task::Sense;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::Path;
@@ -319,18 +321,40 @@ pub fn to_toml(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
     )
 }
 
-/// Returns the linkage file of a linkage as [`to_toml`] does; of a body that lies at `frame_deg` from C -> D on the coupler a
-/// comment says so.
-pub fn to_toml_with_body(
-    name: &str,
-    unit: Option<Unit>,
-    linkage: &FourBar,
-    frame_deg: Option<f64>,
-) -> String {
+/// What the links of a linkage carry besides themselves: a body on the coupler, or the scales of a function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Carried {
+    /// A body whose x axis lies so many degrees from the line from C to D.
+    Body(f64),
+    /// A function, with the angles of crank and follower from the line from A to B at an input and an output of 0, degrees,
+    /// and the sense in which outputs count.
+    Function([f64; 2], Sense),
+}
+
+impl Carried {
+    /// Returns what the links of a candidate carry; `None` in a path.
+    pub fn of(candidate: &Candidate) -> Option<Carried> {
+        let Candidate { frame_deg, input_offset_deg, output_offset_deg, sense, .. } = candidate;
+        let function = || Some(Carried::Function([(*input_offset_deg)?, (*output_offset_deg)?], (*sense)?));
+        frame_deg.map(Carried::Body).or_else(function)
+    }
+}
+
+/// Returns the linkage file of a linkage as [`to_toml`] does, with a comment on what its links carry.
+pub fn to_toml_with(name: &str, unit: Option<Unit>, linkage: &FourBar, carried: Option<Carried>) -> String {
     let text = to_toml(name, unit, linkage);
-    let Some(frame_deg) = frame_deg else { return text };
-    let comment = format!(
-        "# The body: P is its origin, and its x axis lies {frame_deg:?} degrees counter-clockwise from the line from C to D.\n"
-    );
+    let comment = match carried {
+        None => return text,
+        Some(Carried::Body(frame_deg)) => format!(
+            "# The body: P is its origin, and its x axis lies {frame_deg:?} degrees counter-clockwise from the line from C to D.\n"
+        ),
+        Some(Carried::Function([input, output], sense)) => {
+            let way = if sense == Sense::Opposite { "clockwise" } else { "counter-clockwise" };
+            format!(
+                "# The function: from the line from A to B, the crank stands at {input:?} degrees plus the input, and the\n\
+                 # follower at {output:?} degrees, from which outputs count {way}.\n"
+            )
+        }
+    };
     text.replacen("format = ", &format!("{comment}format = "), 1)
 }

@@ -37,6 +37,19 @@ pub(super) fn check(toml: &TomlText<'_>, design: &DesignSpec) -> Checked<()> {
     ground(toml, design)
 }
 
+/// Refuses bounds of a coupler point, which a function does not have.
+pub(super) fn of_function(toml: &TomlText<'_>, design: &DesignSpec) -> Checked<()> {
+    let DesignSpec { d, e, coupler_x, coupler_y, .. } = design;
+    let given = [("d", d), ("e", e), ("coupler_x", coupler_x), ("coupler_y", coupler_y)];
+    match given.into_iter().find(|(_, limits)| limits.is_some()) {
+        None => Ok(()),
+        Some((key, _)) => {
+            let message = format!("{key} is about a coupler point, which a function does not have");
+            toml.refuse(&format!("design.{key}"), message, "remove it: P is drawn at the follower's pin")
+        }
+    }
+}
+
 fn lengths(toml: &TomlText<'_>, design: &DesignSpec) -> Checked<()> {
     let links = [("a", design.a), ("b", design.b), ("c", design.c), ("ground", design.ground)];
     let distances = [("d", design.d), ("e", design.e)];

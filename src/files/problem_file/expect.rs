@@ -96,13 +96,13 @@ impl Expect {
 
 /// Checks the table of a problem with this task.
 pub(super) fn check(toml: &TomlText<'_>, expect: &Expect, task: &TaskSpec) -> Checked<()> {
-    let points = task.points.len();
+    let points = task.len();
     let of_paths = [("best_known_sum_sq", expect.best_known_sum_sq), ("goal_sum_sq", expect.goal_sum_sq)];
     let of_motions =
         [("objective", expect.objective), ("rms_deg", expect.rms_deg), ("max_deg", expect.max_deg)];
     let (others, kind, help) = match task.body {
         None => (&of_motions[..], "a motion", "for a path write best_known_sum_sq"),
-        Some(_) => (&of_paths[..], "a path", "for a motion write objective, rms_deg, max_deg"),
+        Some(_) => (&of_paths[..], "a path", "for a motion or a function write objective, rms_deg, max_deg"),
     };
     if let Some((key, _)) = others.iter().find(|(_, value)| value.is_some()) {
         let message = format!("{key} is a figure of {kind}");

@@ -7,6 +7,7 @@ mod certify;
 mod closing;
 mod design;
 mod expect;
+mod function;
 mod lists;
 mod motion;
 mod overrides;
@@ -109,7 +110,7 @@ pub fn parse(
     overrides: &[(String, String)],
 ) -> Result<ProblemFile, Box<Diagnostic>> {
     // A path that is typed may lead anywhere; a path in a file may not.
-    let files = ["task.path.file", "task.path.svg", "task.motion.file"];
+    let files = ["task.path.file", "task.path.svg", "task.motion.file", "task.function.file"];
     let anywhere = files.iter().any(|key| is_set(overrides, key));
     parse_at(file_name, text, &Whereabouts { folder, anywhere, beside: &[] }, overrides)
 }
@@ -170,6 +171,9 @@ fn parse_at(
         task_of(&toml, raw.task.take(), whereabouts, raw.unit, overrides)?;
     let mut design = design::spec_of(&raw.design.0);
     design::check(&toml, &design)?;
+    if path.is_function() {
+        design::of_function(&toml, &design)?;
+    }
     let longest_is_silent = raw.require.0.longest_max.is_none();
     let mut require = require_of(&toml, raw.require.0, path.timing.as_ref())?;
     if longest_is_silent {
@@ -207,23 +211,28 @@ fn task_of(
     unit: Option<Unit>,
     overrides: &[(String, String)],
 ) -> Checked<path::TaskRead> {
-    let (path, motion) = task.map_or((None, None), |OnlyTable(task)| (task.path, task.motion));
-    match (path, motion) {
-        (Some(_), Some(_)) => {
-            let message = "two tasks: [task.path] and [task.motion]";
-            toml.refuse_key("task.motion", message, "a problem has one task: keep one of the two")
-        }
-        (path, None) => {
-            let tolerance_is_set = is_set(overrides, "task.path.tolerance");
+    let Some(OnlyTable(RawTask { path, motion, function })) = task else {
+        return path::path_of(toml, None, whereabouts, unit, false);
+    };
+    let tables = [("path", path.is_some()), ("motion", motion.is_some()), ("function", function.is_some())];
+    let mut given = tables.iter().filter(|(_, there)| *there).map(|(name, _)| *name);
+    if let (Some(first), Some(second)) = (given.next(), given.next()) {
+        let message = format!("two tasks: [task.{first}] and [task.{second}]");
+        let help = "a problem has one task: keep one of the two";
+        return toml.refuse_key(&format!("task.{second}"), message, help);
+    }
+    let is_set = |key: &str| is_set(overrides, key);
+    match (motion, function) {
+        (Some(OnlyTable(motion)), _) => motion::motion_of(toml, &motion, whereabouts, is_set),
+        (None, Some(OnlyTable(function))) => function::function_of(toml, &function, whereabouts, is_set),
+        (None, None) => {
+            let tolerance_is_set = is_set("task.path.tolerance");
             path::path_of(toml, path.map(|table| table.0), whereabouts, unit, tolerance_is_set)
-        }
-        (None, Some(OnlyTable(motion))) => {
-            motion::motion_of(toml, &motion, whereabouts, |key| is_set(overrides, key))
         }
     }
 }
 
-/// Reads a bare file of points or poses, or a bare drawing, as a problem with every default; its name is the file's.
+/// Reads a bare file of points, poses or pairs, or a bare drawing, as a problem with every default; its name is the file's.
 ///
 /// # Errors
 /// A [`Diagnostic`] that points at the fault.
@@ -235,7 +244,7 @@ pub fn from_points_file(path: &Path, overrides: &[(String, String)]) -> Result<P
     };
     // Keys of a path that are set on the command line ask for a path through the places.
     let asks_for_path = overrides.iter().any(|(key, _)| key.starts_with("task.path."));
-    let text = text_about(file, !asks_for_path && holds_poses(path));
+    let text = text_about(file, if asks_for_path { "path" } else { task_of_bare(path) });
     let whereabouts = Whereabouts { folder: Some(folder_of(path)), anywhere: true, beside: &[] };
     parse_at(&shown, &text, &whereabouts, overrides)
 }
@@ -245,10 +254,25 @@ pub fn holds_poses(path: &Path) -> bool {
     !is_drawing(path) && points_file::holds_poses(path)
 }
 
-/// Returns the text of a problem file whose target is a points file, a file of poses or a drawing and that states nothing
-/// else.
-fn text_about(target: &str, poses: bool) -> String {
-    let task = if poses { "motion" } else { "path" };
+/// Returns whether a bare target holds pairs of a function: a CSV with the column input_deg.
+pub fn holds_pairs(path: &Path) -> bool {
+    !is_drawing(path) && points_file::holds_pairs(path)
+}
+
+/// Returns the name of the task that a bare target is: a function of pairs, a motion of poses, else a path.
+fn task_of_bare(path: &Path) -> &'static str {
+    if holds_pairs(path) {
+        "function"
+    } else if holds_poses(path) {
+        "motion"
+    } else {
+        "path"
+    }
+}
+
+/// Returns the text of a problem file whose target is a points file, a file of poses or pairs or a drawing and that states
+/// nothing else.
+fn text_about(target: &str, task: &str) -> String {
     let key = if is_drawing(Path::new(target)) { "svg" } else { "file" };
     let value = toml::Value::String(target.to_owned());
     format!("format = {FORMAT}\n[task.{task}]\n{key} = {value}\n")
@@ -339,11 +363,12 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Checked<SolveSpec> {
 
 /// Checks that there is a body, where its pins are to lie in a part of it.
 fn pins_of(toml: &TomlText<'_>, task: &TaskSpec, require: &RequireSpec) -> Checked<()> {
-    if require.pins_in.is_none() || task.body.is_some() {
+    if require.pins_in.is_none() || task.table() == "task.motion" {
         return Ok(());
     }
+    let kind = task.table().trim_start_matches("task.");
     let help = "remove it, or give the body's poses in [task.motion]; pivots_in is for the fixed pivots";
-    toml.refuse("require.pins_in", "pins_in is a part of a body, and a path has no body", help)
+    toml.refuse("require.pins_in", format!("pins_in is a part of a body, and a {kind} has no body"), help)
 }
 
 /// Checks that a method searches for poses, in a motion.
@@ -351,7 +376,7 @@ fn method_of(toml: &TomlText<'_>, task: &TaskSpec, method: Method) -> Checked<()
     match method {
         Method::Genetic | Method::DifferentialEvolution if task.body.is_some() => toml.refuse(
             "solve.method",
-            format!("method = \"{}\" is not supported for poses yet", method.name()),
+            format!("method = \"{}\" is not supported for {}s yet", method.name(), task.noun()),
             "write method = \"auto\" or \"least-squares\"; they need fewer evaluations",
         ),
         _ => Ok(()),

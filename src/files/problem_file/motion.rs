@@ -53,5 +53,9 @@ pub(super) fn motion_of(
     let body = Some(BodySpec { angle_deg, angle_weight, tolerance_deg });
     let points = std::mem::take(&mut target.points);
     let closed = target.closed;
-    task_read(toml, target, TaskSpec { points, closed, weight, tolerance, timing, raw: None, body })
+    task_read(
+        toml,
+        target,
+        TaskSpec { points, closed, weight, tolerance, timing, raw: None, body, output: None },
+    )
 }

@@ -59,7 +59,8 @@ pub(super) fn path_of(
     let weight = lists.weights(path.weight.as_deref().map(numbers), weight_column)?;
     let timing = lists.timing(path.timing.as_ref(), crank_column)?;
     let points = std::mem::take(&mut target.points);
-    let spec = TaskSpec { points, closed: target.closed, weight, tolerance, timing, raw, body: None };
+    let spec =
+        TaskSpec { points, closed: target.closed, weight, tolerance, timing, raw, body: None, output: None };
     task_read(toml, target, spec)
 }
 
@@ -143,6 +144,9 @@ fn explain_task(toml: &TomlText<'_>, target: &Target, spec: &TaskSpec, error: &T
             target.at_point(toml, *index, error.to_string())
         }
         TaskError::LengthMismatch { .. } => target.at_all(toml, error.to_string()),
+        TaskError::ConstantInput | TaskError::ConstantOutput | TaskError::NoInput => target
+            .at_all(toml, error.to_string())
+            .with_help("give at least two pairs whose inputs and outputs differ"),
         TaskError::NoAngle => target.at_all(toml, "no pose has an angle".into()).with_help(
             "give at least one pose an angle: [x, y, degrees]; for points alone write [task.path] with points = [..]",
         ),

@@ -6,9 +6,9 @@ use crate::files::toml_values::{BoundedXY, Bounds, Count, Number, OneOrEach, Onl
 use crate::mechanism::Unit;
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
-use crate::task::AngleOffset;
 use crate::task::requirement::RawRequire;
 use crate::task::spec::{Method, Objective, Variables};
+use crate::task::{AngleOffset, Sense};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -45,7 +45,7 @@ pub(crate) struct RawProblem {
     pub expect: Option<OnlyTable<Expect>>,
 }
 
-/// The task: a path or a motion.
+/// The task: a path, a motion or a function.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Task")]
@@ -54,6 +54,47 @@ pub(crate) struct RawTask {
     pub path: Option<OnlyTable<RawPath>>,
     /// Poses that a body is to pass.
     pub motion: Option<OnlyTable<RawMotion>>,
+    /// Angles that the follower is to have at angles of the crank.
+    pub function: Option<OnlyTable<RawFunction>>,
+}
+
+/// Angles that the follower is to have at angles of the crank: pairs, a file of pairs, or a formula.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Function")]
+pub(crate) struct RawFunction {
+    /// How far the crank has turned at each pair, degrees, counter-clockwise positive. Give input_deg and output_deg, or
+    /// file, or of.
+    pub input_deg: Option<Vec<Number>>,
+    /// How far the follower has turned at each pair, degrees.
+    pub output_deg: Option<Vec<Number>>,
+    /// A CSV file, named from the problem file's folder: columns input_deg, output_deg and optionally weight,
+    /// tolerance_deg.
+    pub file: Option<String>,
+    /// A formula in x, such as "log10(x)": the follower turns in proportion to its value as the crank does to x.
+    pub of: Option<String>,
+    /// The first and the last x of the formula.
+    pub over: Option<XY>,
+    /// How far the crank turns over the formula's range, degrees.
+    pub input_range_deg: Option<Number>,
+    /// How far the follower turns between the least and the greatest value of the formula, degrees.
+    pub output_range_deg: Option<Number>,
+    /// The number of pairs taken of the formula, evenly in x; 61 where silent.
+    pub samples: Option<Count>,
+    /// "free": inputs count from any angle of the crank; "ground": from the line A to B.
+    #[serde(default)]
+    pub input_offset: AngleOffset,
+    /// The same of outputs and the follower.
+    #[serde(default)]
+    pub output_offset: AngleOffset,
+    /// The sense in which the follower turns while the crank turns as written: "same", "opposite" or, where silent,
+    /// "any".
+    #[serde(default)]
+    pub sense: Sense,
+    /// The largest error of the output accepted, degrees, 0 or more: a number for every pair, or a list of one a pair.
+    pub tolerance_deg: Option<OneOrEach>,
+    /// Weights of the squared errors, above 0, one a pair; where silent, all pairs count alike.
+    pub weight: Option<Vec<Number>>,
 }
 
 /// Poses that a body is to pass, or places of its point alone.

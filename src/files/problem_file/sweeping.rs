@@ -2,7 +2,7 @@
 
 use super::raw::RawProblem;
 use super::target::Whereabouts;
-use super::{folder_of, holds_poses, is_bare_target, overrides, text_about};
+use super::{folder_of, is_bare_target, overrides, task_of_bare, text_about};
 use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::input_text;
 use crate::files::linkage_file::check_format;
@@ -28,8 +28,11 @@ impl Template {
             let diagnostic = Diagnostic::new(shown, "", "the name of this file is not text");
             return Err(Box::new(diagnostic.with_help("rename the file")));
         };
-        let text =
-            if is_bare_target(path) { text_about(&name, holds_poses(path)) } else { input_text::read(path)? };
+        let text = if is_bare_target(path) {
+            text_about(&name, task_of_bare(path))
+        } else {
+            input_text::read(path)?
+        };
         let toml = TomlText { file: &shown, text: &text };
         let raw: RawProblem = toml.read()?;
         check_format(&toml, raw.format, super::FORMAT)?;

@@ -1,7 +1,7 @@
 //! Reads the targets of a task from the file itself, or from a CSV or a drawing beside it.
 
-use super::raw::{RawMotion, RawPath};
-use crate::files::diagnostic::{Checked, Diagnostic, quoted};
+use super::raw::{RawFunction, RawMotion, RawPath};
+use crate::files::diagnostic::{Checked, Diagnostic, counted, quoted};
 use crate::files::points_file;
 use crate::files::points_file::{MAX_POINTS, PointsFile};
 use crate::files::svg_file;
@@ -33,11 +33,12 @@ pub(super) enum Source {
 
 /// Targets with their source.
 pub(super) struct Target {
-    /// The table that they stand in: `task.path` or `task.motion`.
+    /// The table that they stand in, such as `task.path`.
     pub table: &'static str,
     /// The kind of their task, and the word for one of them.
     pub kind: &'static str,
     pub one: &'static str,
+    /// The places; of a function, the input and the output of each pair, degrees.
     pub points: Vec<[f64; 2]>,
     pub source: Source,
     pub closed: bool,
@@ -157,8 +158,83 @@ impl Target {
         Ok((Target { table, kind, one, points, source, closed, samples: None, resampled: false }, angles))
     }
 
+    /// Reads the pairs of a function from its source.
+    pub fn of_function(
+        toml: &TomlText<'_>,
+        function: &RawFunction,
+        whereabouts: &Whereabouts<'_>,
+    ) -> Checked<Target> {
+        let refuse = |key: &str, message: String, help: &str| {
+            toml.refuse_key(&format!("task.function.{key}"), message, help)
+        };
+        let given = [
+            ("input_deg", function.input_deg.is_some() || function.output_deg.is_some()),
+            ("file", function.file.is_some()),
+            ("of", function.of.is_some()),
+        ];
+        let mut sources = given.iter().filter(|(_, there)| *there).map(|(key, _)| *key);
+        let (source, second) = (sources.next(), sources.next());
+        if let (Some(first), Some(second)) = (source, second) {
+            let message = format!("two sources of pairs: {first} and {second}");
+            return refuse(second, message, "keep one of the two");
+        }
+        let of_formula = [
+            ("over", function.over.is_some()),
+            ("input_range_deg", function.input_range_deg.is_some()),
+            ("output_range_deg", function.output_range_deg.is_some()),
+            ("samples", function.samples.is_some()),
+        ];
+        if let Some((key, _)) = of_formula.iter().find(|(_, there)| *there && function.of.is_none()) {
+            let message = format!("{key} belongs to a formula, and there is none");
+            return refuse(key, message, "remove it, or write of = \"a formula in x\"");
+        }
+        let (points, source) = match source {
+            Some("input_deg") => (Self::pairs_here(toml, function)?, Source::File),
+            Some("file") => {
+                let file = function.file.as_deref().unwrap_or_default();
+                let mut csv = match whereabouts.text_of(file) {
+                    Some(text) => points_file::parse_pairs(file, text)?,
+                    None => points_file::load_pairs(&whereabouts.find(toml, "task.function.file", file)?)?,
+                };
+                (std::mem::take(&mut csv.points), Source::Csv(csv))
+            }
+            Some(_) => (super::function::of_formula(toml, function)?, Source::File),
+            None => {
+                let help = "add input_deg = [..] and output_deg = [..], or file = \"table.csv\", or of = \"log10(x)\"";
+                return toml.refuse_key("task.function", "the function has no pairs", help);
+            }
+        };
+        let (table, kind, one) = ("task.function", "function", "pair");
+        Ok(Target { table, kind, one, points, source, closed: false, samples: None, resampled: false })
+    }
+
+    /// Returns the pairs that the problem file itself gives.
+    fn pairs_here(toml: &TomlText<'_>, function: &RawFunction) -> Checked<Vec<[f64; 2]>> {
+        let (Some(inputs), Some(outputs)) = (&function.input_deg, &function.output_deg) else {
+            let missing = if function.input_deg.is_none() { "input_deg" } else { "output_deg" };
+            let message = format!("the function has no {missing}");
+            let help = "give one angle of the crank (input_deg) and one of the follower (output_deg) a pair";
+            return toml.refuse_key("task.function", message, help);
+        };
+        if inputs.len() != outputs.len() {
+            let [inputs, outputs] =
+                [(inputs.len(), "input"), (outputs.len(), "output")].map(|(n, what)| counted(n, what));
+            let message = format!("{inputs} and {outputs}");
+            return toml.refuse("task.function.output_deg", message, "give one output for each input");
+        }
+        if inputs.len() > MAX_POINTS {
+            let message = format!("{} pairs; at most {MAX_POINTS} are read", inputs.len());
+            let help = "leave out pairs: a few hundred suffice";
+            return toml.refuse_key("task.function.input_deg", message, help);
+        }
+        Ok(inputs.iter().zip(outputs).map(|(input, output)| [input.0, output.0]).collect())
+    }
+
     /// Returns the key of the list of targets.
     fn list(&self) -> String {
+        if self.one == "pair" {
+            return format!("{}.output_deg", self.table);
+        }
         format!("{}.{}s", self.table, self.one)
     }
 
@@ -200,6 +276,8 @@ impl Whereabouts<'_> {
                 format!("a {what} cannot be read here: this text comes from no folder"),
                 if key.starts_with("task.motion") {
                     "write the poses as poses = [[x, y, angle in degrees], ...]"
+                } else if key.starts_with("task.function") {
+                    "write the pairs as input_deg = [..] and output_deg = [..]"
                 } else {
                     "write the points as points = [[x, y], ...]"
                 },

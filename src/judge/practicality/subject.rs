@@ -50,7 +50,10 @@ impl Practicality {
         let verdict = judge(problem.task(), &candidate.linkage, &radians, &candidate.t1_at);
         let cycle = candidate.transmission_deg.over == TransmissionOver::Cycle;
         let sweep = Sweep::of_motion(&verdict.motion, cycle);
-        let felt = sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem));
+        // What moves the path says nothing about a function.
+        let felt = (!problem.is_function())
+            .then(|| sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem)))
+            .flatten();
         let noun = problem.spec().task.noun();
         Some(Practicality { noun, ..Practicality::of(sweep, build, felt, true) })
     }

@@ -14,7 +14,7 @@
 
 use crate::judge::assess::to_raw;
 use crate::judge::costs::{marginal, weighted_rms};
-use crate::judge::error::structural_error;
+use crate::judge::error::{StructuralError, structural_error};
 use crate::judge::loosen::Demand;
 use crate::judge::rank::{compare, exact_objective};
 use crate::mechanism::FourBar;
@@ -185,9 +185,12 @@ impl Comparison<'_> {
     /// Checks every figure and verdict of a candidate; returns whether it could be judged.
     fn candidate(&mut self, recorded: &Candidate) -> bool {
         let at = (&recorded.linkage, recorded.crank_deg.as_slice(), recorded.t1_at.as_slice());
-        let Some(found) = self.judged(at, recorded.frame_deg, "open at one of them") else { return false };
+        let Some(found) = self.judged(at, recorded.own_frame_deg(), "open at one of them") else {
+            return false;
+        };
         let word = |there: bool| if there { "there" } else { "absent" };
         self.same("frame_deg", word(recorded.frame_deg.is_some()), word(found.frame_deg.is_some()));
+        self.offsets(recorded, &found);
         self.errors(recorded, &found);
         self.number(
             "grashof_margin",
@@ -215,9 +218,31 @@ impl Comparison<'_> {
         true
     }
 
+    /// Compares the offsets and the sense of a function.
+    fn offsets(&mut self, recorded: &Candidate, found: &Candidate) {
+        let offsets = [
+            ("input_offset_deg", recorded.input_offset_deg, found.input_offset_deg),
+            ("output_offset_deg", recorded.output_offset_deg, found.output_offset_deg),
+        ];
+        for (name, recorded, found) in offsets {
+            match (recorded, found) {
+                (Some(recorded), Some(found)) => {
+                    // Half a turn is the same either way.
+                    let turns = ((recorded - found) / 360.0).round();
+                    self.number(name, recorded, found + 360.0 * turns, 360.0);
+                }
+                (recorded, found) => {
+                    let word = |there: bool| if there { "there" } else { "absent" };
+                    self.same(name, word(recorded.is_some()), word(found.is_some()));
+                }
+            }
+        }
+        self.alike("sense", &recorded.sense, &found.sense);
+    }
+
     fn errors(&mut self, recorded: &Candidate, found: &Candidate) {
         let problem = self.problem;
-        let (n, size) = (problem.task().len(), problem.task().size());
+        let (n, size) = (problem.task().len(), problem.task().error_size());
         let (r, f) = (&recorded.error, &found.error);
         match problem.spec().solve.objective {
             Objective::SumOfSquares => self.sum_sq("error.objective", r.objective, f.objective, n),
@@ -230,7 +255,8 @@ impl Comparison<'_> {
         self.number("error.rms", r.rms, f.rms, size);
         self.number("error.max", r.max, f.max, size);
         self.number("error.rms_over_size", r.rms_over_size, f.rms_over_size, 1.0);
-        self.angles(r.angle.as_ref(), f.angle.as_ref(), recorded);
+        self.angles("error.angle", (r.angle.as_ref(), f.angle.as_ref()), recorded);
+        self.angles("error.output", (r.output.as_ref(), f.output.as_ref()), recorded);
         self.under("error.to_curve.").curve(&r.to_curve, &f.to_curve, n);
         match (&r.to_raw, to_raw(problem, recorded)) {
             (Some(r), Some(f)) => {
@@ -244,8 +270,12 @@ impl Comparison<'_> {
         }
         if r.max_at != f.max_at {
             // The largest error may be at another point with an equal error.
+            let there = |e: StructuralError| match problem.is_function() {
+                false => e.structural.get(r.max_at).map(|s| s.norm()),
+                true => Some((*e.angle?.structural.get(r.max_at)?)?.abs().to_degrees()),
+            };
             let equal = structural_error(problem, recorded)
-                .and_then(|e| e.structural.get(r.max_at).map(|s| s.norm()))
+                .and_then(there)
                 .is_some_and(|there| f.max - there <= RELATIVE * f.max + ABSOLUTE * size);
             if !equal {
                 self.differ("error.max_at", r.max_at, f.max_at);
@@ -253,25 +283,25 @@ impl Comparison<'_> {
         }
     }
 
-    /// Compares the errors of the body's angle, degrees.
+    /// Compares the errors of the body's or the follower's angle, degrees.
     fn angles(
         &mut self,
-        recorded: Option<&AngleErrorRecord>,
-        found: Option<&AngleErrorRecord>,
+        name: &str,
+        (recorded, found): (Option<&AngleErrorRecord>, Option<&AngleErrorRecord>),
         candidate: &Candidate,
     ) {
         let (Some(r), Some(f)) = (recorded, found) else {
             let word = |there: bool| if there { "there" } else { "absent" };
-            return self.same("error.angle", word(recorded.is_some()), word(found.is_some()));
+            return self.same(name, word(recorded.is_some()), word(found.is_some()));
         };
-        self.number("error.angle.rms_deg", r.rms_deg, f.rms_deg, 360.0);
-        self.number("error.angle.max_deg", r.max_deg, f.max_deg, 360.0);
+        self.number(&format!("{name}.rms_deg"), r.rms_deg, f.rms_deg, 360.0);
+        self.number(&format!("{name}.max_deg"), r.max_deg, f.max_deg, 360.0);
         if r.max_at != f.max_at {
             // The largest error may be at another pose with an equal error.
             let there = structural_error(self.problem, candidate)
                 .and_then(|error| Some((*error.angle?.structural.get(r.max_at)?)?.abs().to_degrees()));
             if !there.is_some_and(|there| f.max_deg - there <= RELATIVE * f.max_deg + ABSOLUTE * 360.0) {
-                self.differ("error.angle.max_at", r.max_at, f.max_at);
+                self.differ(&format!("{name}.max_at"), r.max_at, f.max_at);
             }
         }
     }

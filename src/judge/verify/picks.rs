@@ -26,7 +26,9 @@ impl Comparison<'_> {
         let most = greatest_objective(problem, closest);
         let within = most.map(|most| as_error(problem, most));
         match (picks.within, within) {
-            (Some(recorded), Some(found)) => own.number("within", recorded, found, problem.task().size()),
+            (Some(recorded), Some(found)) => {
+                own.number("within", recorded, found, problem.task().error_size())
+            }
             (recorded, found) => {
                 let word = |there: bool| if there { "there" } else { "absent" };
                 own.same("within", word(recorded.is_some()), word(found.is_some()));

@@ -85,6 +85,27 @@ pub fn coupler_gradient(frame: &Frame, crank: f64, coupler: f64) -> Option<([f64
     Some((shape, -dot(v, turned(e)) * crank * per))
 }
 
+/// Computes the gradient of the follower's direction, dtheta4 by the columns of [`ShapeGradient::shape`] and by the crank
+/// angle; `None` at a toggle.
+///
+/// ```text
+/// dtheta4 = (a <u, i e> dphi + <u, e> da + db - <u, v> dc - <u, dB - dA>) / (c <u, i v>)
+/// ```
+///
+/// `crank` = a, `follower` = c.
+#[inline]
+pub fn follower_gradient(frame: &Frame, crank: f64, follower: f64) -> Option<([f64; 9], f64)> {
+    let Frame { crank: e, coupler: u, follower: v } = *frame;
+    let sine = dot(u, turned(v));
+    if sine.abs() <= TOGGLE_SINE {
+        return None;
+    }
+    let per = 1.0 / (follower * sine);
+    let shape =
+        [u.re, u.im, -u.re, -u.im, dot(u, e), 1.0, -dot(u, v), 0.0, 0.0].map(|numerator| numerator * per);
+    Some((shape, dot(u, turned(e)) * crank * per))
+}
+
 /// Computes dP/dphi alone, the last part of [`shape_gradient`]; `None` at a toggle.
 #[inline]
 pub fn by_crank_angle(frame: &Frame, crank: f64, coupler: f64, offset: Complex) -> Option<Complex> {

@@ -1,12 +1,12 @@
 //! Charts of the transmission angle, angles, velocities and accelerations against the crank angle.
 
-use super::chart::{Abscissa, Chart, Range, Series};
 use super::vectors::{ACCELERATIONS, VELOCITIES, per_time};
 use super::{CYCLE_ROWS, degrees};
 use crate::mechanism::analysis::{Analysis, Configuration, MobilityRecord, Pose, Rates, Row, Status};
 use crate::mechanism::four_bar::transmission::POOR_DEG;
 use crate::mechanism::point;
 use crate::report::canvas::{Area, palette};
+use crate::report::chart::{Abscissa, Chart, Range, Series};
 use crate::report::sheet::{FULL, HEAD, INSET, Sheet};
 
 const HEIGHT: f64 = 196.0;

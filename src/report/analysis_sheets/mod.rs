@@ -10,7 +10,6 @@
 //!
 //! The figures are those of the analysis; only curves are computed from the linkage's own kinematics.
 
-mod chart;
 mod configurations;
 mod construction;
 mod cycle;

@@ -18,13 +18,18 @@ pub(super) fn equal(x: f64, y: f64, nothing: f64) -> bool {
 
 /// Returns the value below which an error of an entry is only rounding; the other figures have no such floor.
 pub(super) fn nothing(entry: &Entry, key: SortKey) -> f64 {
-    let size = Bounds::of(entry.target.iter().map(|p| point(*p))).diagonal();
+    let outputs = || entry.pairs.iter().map(|[_, output]| *output);
+    let range = outputs().fold(f64::NEG_INFINITY, f64::max) - outputs().fold(f64::INFINITY, f64::min);
+    let (size, n) = match entry.pairs.len() {
+        0 => (Bounds::of(entry.target.iter().map(|p| point(*p))).diagonal(), entry.target.len()),
+        n => (range, n),
+    };
     let mean_sq = EXACT_MEAN_SQ * size.powi(2);
     match key {
-        SortKey::SumSq => mean_sq * entry.target.len() as f64,
+        SortKey::SumSq => mean_sq * n as f64,
         SortKey::Rms | SortKey::Max | SortKey::ToCurve => mean_sq.sqrt(),
         SortKey::Objective => match entry.measure {
-            Measure::Sum | Measure::WeightedSum => mean_sq * entry.target.len() as f64,
+            Measure::Sum | Measure::WeightedSum => mean_sq * n as f64,
             Measure::Largest => mean_sq.sqrt(),
             Measure::LargestPart => EXACT_MEAN_SQ.sqrt(),
         },

@@ -40,9 +40,13 @@ pub struct Entry {
     pub candidate: Candidate,
     /// The name of the problem to whose target the errors are measured.
     pub target_name: String,
-    /// The target to which the errors are measured.
+    /// The target to which the errors are measured: places, none of a function.
     pub target: Vec<[f64; 2]>,
-    /// The angles of the body at the target, in a motion.
+    /// The input and the output of each pair of a function, degrees; empty for other tasks.
+    pub pairs: Vec<[f64; 2]>,
+    /// The word for one of the targets.
+    pub noun: &'static str,
+    /// The angles of the body at the target in a motion, of the follower in a function.
     pub body: Option<BodySpec>,
     /// The unit of the lengths.
     pub unit: Option<Unit>,
@@ -61,7 +65,14 @@ impl Entry {
     /// Returns whether the targets of both are the same, up to the rounding of a change of units: points, and the angles
     /// of a body and their weight.
     fn has_target_of(&self, other: &Entry) -> bool {
-        same_points(&self.target, &other.target) && same_body(self.body.as_ref(), other.body.as_ref())
+        same_points(&self.target, &other.target)
+            && self.pairs == other.pairs
+            && same_body(self.body.as_ref(), other.body.as_ref())
+    }
+
+    /// Returns the unit of its errors: that of lengths, of a function degrees.
+    fn error_unit(&self) -> String {
+        if self.pairs.is_empty() { super::words::length_suffix(self.unit) } else { "°".to_owned() }
     }
 
     /// Returns the size: the diagonal of the box that A, B and the moving joints sweep over the circuits used (half a
@@ -201,7 +212,7 @@ fn usual_key(entries: &[Entry]) -> SortKey {
         .windows(2)
         .all(|w| w[0].measure == w[1].measure && w[0].unit == w[1].unit && w[0].has_target_of(&w[1]));
     match entries.first() {
-        Some(first) if one && (first.measure != Measure::Sum || first.body.is_some()) => SortKey::Objective,
+        Some(first) if one && (first.measure != Measure::Sum || first.noun == "pose") => SortKey::Objective,
         _ => SortKey::default(),
     }
 }
@@ -293,15 +304,15 @@ impl Comparison {
     /// Returns the objective, if all rows minimised the same one and it is not the plain sum: the word for its column,
     /// and a sentence on it.
     pub(super) fn minimised(&self) -> Option<(&'static str, String)> {
-        let Entry { measure, body, unit, .. } = &self.rows.first()?.entry;
+        let Entry { measure, body, unit, noun, .. } = &self.rows.first()?.entry;
         let one = self.rows.iter().all(|row| row.entry.measure == *measure) && self.same_target();
         let unit = super::words::length_suffix(*unit);
-        one.then(|| super::words::minimised(*measure, body.as_ref(), &unit)).flatten()
+        one.then(|| super::words::minimised(*measure, (body.as_ref(), noun), &unit)).flatten()
     }
 
     /// Returns whether a row is of a motion, so that there are errors of the body's angle.
     pub(super) fn has_angles(&self) -> bool {
-        self.rows.iter().any(|row| row.entry.body.is_some())
+        self.rows.iter().any(|row| row.entry.noun == "pose")
     }
 
     /// Returns whether every record is true.

@@ -167,6 +167,9 @@ impl Comparison {
     /// Returns the meaning of the marks of the target.
     pub(super) fn circles(&self, target: &str) -> String {
         match self.has_angles() {
+            false if self.rows.iter().all(|row| !row.entry.pairs.is_empty()) => {
+                format!("Curves: the way of the follower's pin; errors of its angle to {target}")
+            }
             false => format!("Circles: {target}, its point 0 filled"),
             true => format!(
                 "Circles: {target}, its pose 0 filled; the arms are the body's x (long) and y (short) axis"
@@ -189,7 +192,7 @@ impl Comparison {
     pub(super) fn legend_figures(&self, row: &Ranked) -> String {
         let rms = tables::shown(row, SortKey::Rms, 3);
         let accepted = if row.entry.candidate.accepted { "" } else { ", not accepted" };
-        format!("rms {rms}{}{accepted}", length_suffix(row.entry.unit))
+        format!("rms {rms}{}{accepted}", row.entry.error_unit())
     }
 
     /// Returns a description of the drawing in words, for those who do not see it.
@@ -204,8 +207,17 @@ impl Comparison {
         text
     }
 
-    /// Returns the box of all targets.
+    /// Returns the box of all targets; of functions, that of the pivots and of the circles of the pins.
     fn bounds(&self) -> Bounds {
-        Bounds::of(self.rows.iter().flat_map(|row| &row.entry.target).map(|p| point(*p)))
+        let reached = |row: &Ranked| {
+            let linkage = &row.entry.candidate.linkage;
+            let circles =
+                [(linkage.crank_pivot(), linkage.crank()), (linkage.follower_pivot(), linkage.follower())];
+            let is_drawn = !row.entry.pairs.is_empty();
+            let ends = circles.map(|(pivot, r)| [pivot - Complex::new(r, r), pivot + Complex::new(r, r)]);
+            ends.into_iter().flatten().filter(move |_| is_drawn)
+        };
+        let targets = self.rows.iter().flat_map(|row| &row.entry.target).map(|p| point(*p));
+        Bounds::of(targets.chain(self.rows.iter().flat_map(reached)))
     }
 }

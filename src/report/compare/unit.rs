@@ -13,11 +13,17 @@ impl Entry {
         let factor = from.factor_to(to);
         entry.unit = Some(to);
         entry.target.iter_mut().flatten().for_each(|x| *x *= factor);
-        entry.body.iter_mut().for_each(|body| body.angle_weight *= factor);
+        if entry.pairs.is_empty() {
+            entry.body.iter_mut().for_each(|body| body.angle_weight *= factor);
+        }
         entry.extent = entry.extent.map(|extent| extent * factor);
         let candidate = &mut entry.candidate;
         candidate.linkage = candidate.linkage.scaled(factor)?;
         candidate.grashof_margin *= factor;
+        if !entry.pairs.is_empty() {
+            // Errors of a function are degrees.
+            return Ok(entry);
+        }
         let error = &mut candidate.error;
         error.sum_sq *= factor * factor;
         error.objective *= match self.measure {

@@ -112,9 +112,7 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
             );
             analysis_csv(&analyze(&request))
         }
-        Format::Toml => {
-            linkage_file::to_toml_with_body(&subject.legal_name(), unit, &linkage, subject.frame_deg)
-        }
+        Format::Toml => linkage_file::to_toml_with(&subject.legal_name(), unit, &linkage, subject.carried),
         _ => {
             let mut object = serde_json::json!({
                 "format": linkage_file::FORMAT,
@@ -125,8 +123,14 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
             if let Some(unit) = unit {
                 object["unit"] = unit.label().into();
             }
-            if let Some(frame_deg) = subject.frame_deg {
-                object["frame_deg"] = frame_deg.into();
+            match subject.carried {
+                None => {}
+                Some(linkage_file::Carried::Body(frame_deg)) => object["frame_deg"] = frame_deg.into(),
+                Some(linkage_file::Carried::Function([input, output], sense)) => {
+                    object["input_offset_deg"] = input.into();
+                    object["output_offset_deg"] = output.into();
+                    object["sense"] = super::words::sense(sense).into();
+                }
             }
             format!("{object:#}\n")
         }

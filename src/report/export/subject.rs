@@ -1,6 +1,6 @@
 //! The subject of an export: a linkage with the known facts about its target.
 
-use crate::files::linkage_file::LinkageFile;
+use crate::files::linkage_file::{Carried, LinkageFile};
 use crate::files::name;
 use crate::mechanism::Unit;
 use crate::mechanism::{AssemblyMode, FourBar};
@@ -28,6 +28,8 @@ pub struct Subject {
     pub positions: Vec<(f64, AssemblyMode)>,
     /// In a motion: the angle from C -> D to the body's x axis, degrees.
     pub frame_deg: Option<f64>,
+    /// What its links carry.
+    pub carried: Option<Carried>,
     /// In a motion: the angle of the body at each target, degrees; `None` where only the place counts.
     pub body_deg: Vec<Option<f64>>,
 }
@@ -47,7 +49,12 @@ impl Subject {
             closed: path.closed,
             positions,
             frame_deg: candidate.frame_deg,
-            body_deg: path.body.as_ref().map_or(Vec::new(), |body| body.angle_deg.clone()),
+            carried: Carried::of(candidate),
+            body_deg: path
+                .body
+                .as_ref()
+                .filter(|_| !path.is_function())
+                .map_or(Vec::new(), |body| body.angle_deg.clone()),
         }
     }
 
@@ -62,6 +69,7 @@ impl Subject {
             closed: false,
             positions: Vec::new(),
             frame_deg: None,
+            carried: None,
             body_deg: Vec::new(),
         }
     }

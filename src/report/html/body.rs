@@ -22,7 +22,7 @@ pub(super) fn body(record: &Record, drawings: &[&str], extent: Extent, shown: Sh
             (practicality::practicality(record, extent))
             (proof::proof(record))
             (exact::exact(record))
-            @if found { (points(record)) }
+            @if found && !record.problem.resolved.task.is_function() { (points(record)) }
             (reproduction(record))
         }
         footer {
@@ -49,7 +49,7 @@ const LIVE: PreEscaped<&str> = PreEscaped(
 /// Returns the table of the targets, filled by the script.
 fn points(record: &Record) -> Markup {
     let task = &record.problem.resolved.task;
-    let (noun, of_motion) = (task.noun(), task.body.is_some());
+    let (noun, of_motion) = (task.noun(), task.table() == "task.motion");
     let heads = [noun, "crank °", "desired x", "desired y", "generated x", "generated y", "error"];
     let of_angle = ["desired angle °", "generated angle °", "angle error °"];
     let heads = heads.into_iter().chain(of_angle.into_iter().filter(|_| of_motion));
@@ -105,7 +105,7 @@ pub(super) fn header(record: &Record) -> Markup {
 
 /// Returns the outcome of the run, in a sentence.
 fn verdict(record: &Record) -> String {
-    let unit = words::unit_suffix(record);
+    let unit = words::error_unit(record);
     let noun = record.problem.resolved.task.noun();
     let figures = |c: &Candidate| {
         format!(

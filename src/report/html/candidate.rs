@@ -4,7 +4,7 @@ use super::data::{MOST_ALTERNATIVES, candidate_key};
 use super::extras::{Shown, extras};
 use super::page::{paragraph, still};
 use super::table::{Cell, Column, minus, tabulated};
-use super::{dimensions, mobility, page, requirements};
+use super::{dimensions, function, mobility, page, requirements};
 use crate::record::{Alternative, Candidate, Pick, Record};
 use crate::report::text::{clean, significant};
 use crate::report::{picks, words};
@@ -52,6 +52,7 @@ fn article(
             h2 id={ (key) "-title" } { (title) }
             @if let Some(drawing) = drawing { (still(drawing)) }
             (figures(record, c))
+            (function::function(record, c, title))
             div.columns {
                 div {
                     h3 { "What it can do" }
@@ -77,7 +78,7 @@ fn article(
 
 /// Returns the most important figures.
 fn figures(record: &Record, c: &Candidate) -> Markup {
-    let unit = words::unit_suffix(record);
+    let unit = words::error_unit(record);
     let length = |value: f64| html! { (minus(&significant(value, 4))) small { (unit) } };
     let (class, verdict) = if c.accepted { ("good", "accepted") } else { ("bad", "not accepted") };
     let noun = record.problem.resolved.task.noun();

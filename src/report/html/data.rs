@@ -109,7 +109,7 @@ impl<'a> Data<'a> {
         }
         let pick =
             |values: &Vec<f64>| chosen.iter().map(|i| values.get(*i).copied().unwrap_or(0.0)).collect();
-        let body = path.body.as_ref();
+        let body = path.body.as_ref().filter(|_| !path.is_function());
         let held = path.points.len() + path.raw.as_ref().map_or(0, |raw| raw.points.len());
         Data {
             unit: record.problem.unit.map(crate::mechanism::Unit::label),
@@ -118,7 +118,7 @@ impl<'a> Data<'a> {
                 numbers: (chosen.len() < path.points.len()).then(|| chosen.clone()),
                 closed: path.closed,
                 tolerance: path.tolerance.as_ref().map(pick),
-                noun: body.map(|_| path.noun()),
+                noun: path.body.as_ref().map(|_| path.noun()),
                 angle_deg: body
                     .map(|body| chosen.iter().map(|i| body.angle_deg.get(*i).copied().flatten()).collect()),
                 tolerance_deg: body.and_then(|body| body.tolerance_deg.as_ref()).map(pick),

@@ -30,6 +30,12 @@ pub(super) fn dimensions(record: &Record, c: &Candidate, short: &str) -> Markup 
             minus(&significant(frame_deg, 6))
         )
     });
+    let function = words::offsets(c).map(|offsets| format!("At an input and an output of 0: {offsets}."));
+    let text = match function {
+        // P is the follower's pin.
+        Some(function) => format!("Ground AB {ground}{unit}. {function}"),
+        None => text,
+    };
     html! {
         (block(&named(record, short), record.problem.unit, &c.linkage))
         (paragraph("notes", &text))

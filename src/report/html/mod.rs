@@ -6,6 +6,7 @@
 //! body.rs         the page's sections in their order; a new section is a line there
 //! table.rs        candidates side by side
 //! candidate.rs    one candidate in words: mobility.rs, requirements.rs, dimensions.rs
+//! function.rs     the function of one candidate: its graph, the error, the pairs
 //! picks.rs        the closest, the smallest, the best transmitting and the buildable linkage side by side
 //! extras.rs       the linkages that the page shows beside the ranked candidates
 //! practicality.rs layers, clearances and sensitivities of the linkages that one would build
@@ -31,6 +32,7 @@ mod dimensions;
 mod exact;
 mod extras;
 mod front;
+mod function;
 mod mobility;
 mod motion;
 pub(super) mod page;

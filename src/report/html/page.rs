@@ -96,6 +96,12 @@ pub(super) fn still(drawing: &str) -> Markup {
     html! { figure.still { (PreEscaped(inline)) } }
 }
 
+/// Returns a drawing that is part of the page, with its script too.
+pub(super) fn drawn(drawing: &str) -> Markup {
+    let inline = drawing.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+    html! { figure.drawn { (PreEscaped(inline)) } }
+}
+
 /// Returns data as JSON that no text inside can break out of: every `<` is written as `\u003c`.
 pub(in crate::report) fn embedded(data: &impl Serialize) -> String {
     // The data has string keys and no maps, so that it can always be written.

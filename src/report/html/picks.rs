@@ -73,16 +73,18 @@ pub(super) fn figures(
     transmission_deg: f64,
     [extent, longest]: [Option<f64>; 2],
 ) -> Markup {
-    let unit = words::unit_suffix(record);
-    let length = |value: Option<f64>| match value.map(|value| significant(value, 4)) {
+    let (unit, of_errors) = (words::unit_suffix(record), words::error_unit(record));
+    let figure = |value: Option<f64>, unit: &str| match value.map(|value| significant(value, 4)) {
         None => NO_NUMBER.to_owned(),
         Some(text) if text == NO_NUMBER => text,
-        Some(text) => minus(&text) + &unit,
+        Some(text) => minus(&text) + unit,
     };
+    let error = |value: f64| figure(Some(value), &of_errors);
+    let length = |value: Option<f64>| figure(value, &unit);
     html! {
         dl {
-            dt { "rms error" } dd { (length(Some(rms))) }
-            dt { "largest error" } dd { (length(Some(max))) }
+            dt { "rms error" } dd { (error(rms)) }
+            dt { "largest error" } dd { (error(max)) }
             dt { "transmission" } dd { (significant(transmission_deg, 3)) "°" }
             dt { "extent" } dd { (length(extent)) }
             dt { "longest length" } dd { (length(longest)) }

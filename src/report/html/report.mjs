@@ -45,6 +45,8 @@ function begin() {
     });
     player.errors.figure.after(turned.figure);
   }
+  // A function has no points to be near to.
+  player.errors.figure.hidden = data.target.points.length === 0;
   const radios = new Map();
   const choices = document.getElementById("choices");
   for (const article of articles) {

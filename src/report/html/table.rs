@@ -130,7 +130,10 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         c.error.angle.as_ref().map_or(Cell::words(NO_NUMBER), |angle| Cell::degrees(of(angle)))
     };
     let [angle_rms, angle_max] = ["angle rms", "angle largest"];
-    let all: [Column<&Candidate>; 14] = [
+    let from = |deg: Option<f64>| {
+        deg.map_or(Cell::words(NO_NUMBER), |deg| Cell::number(deg, minus(&format!("{deg:.2}°"))))
+    };
+    let all: [Column<&Candidate>; 16] = [
         ("rms error", true, &|c| Cell::figure(c.error.rms, 4)),
         ("largest", true, &|c| Cell::figure(c.error.max, 4)),
         (&at, true, &|c| Cell::whole(crate::report::table::worst_at(record, c))),
@@ -139,6 +142,8 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         (ranks.as_ref().map_or("sum of squares", |(head, _)| head), true, &|c| {
             Cell::figure(if ranks.is_none() { c.error.sum_sq } else { c.error.objective }, 5)
         }),
+        ("crank from", true, &|c| from(c.input_offset_deg)),
+        ("follower from", true, &|c| from(c.output_offset_deg)),
         ("to curve", true, &|c| Cell::figure(c.error.to_curve.rms, 4)),
         ("type", false, &|c| Cell::words(c.linkage_type.name())),
         ("transmission", true, &|c| Cell::degrees(c.transmission_deg.worst)),
@@ -148,8 +153,14 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         ("defects", false, &|c| Cell::words(defects(c))),
         ("verdict", false, &|c| Cell::verdict(verdict(record, c), c.accepted)),
     ];
-    let of_motion = task.body.is_some();
-    let is_shown = |column: &&Column<&Candidate>| of_motion || ![angle_rms, angle_max].contains(&column.0);
+    let (of_motion, of_function) = (task.table() == "task.motion", task.is_function());
+    let [crank_from, follower_from] = ["crank from", "follower from"];
+    let is_shown = |column: &&Column<&Candidate>| match column.0 {
+        name if [angle_rms, angle_max].contains(&name) => of_motion,
+        name if [crank_from, follower_from].contains(&name) => of_function,
+        "to curve" => !of_function,
+        _ => true,
+    };
     let columns: Vec<Column<&Candidate>> = all.iter().filter(is_shown).copied().collect();
     let ranked =
         record.candidates.iter().enumerate().map(|(i, c)| (c, candidate_key(i), (i + 1).to_string()));
@@ -165,7 +176,11 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         unit => format!("Lengths in {unit}. "),
     };
     let first = ranks.as_ref().map_or(String::new(), |(_, sentence)| format!("{sentence} "));
-    let notes = if of_motion {
+    let notes = if of_function {
+        "rms error, largest: of the follower's angle, degrees. crank, follower from: their angles from the line A-B at an \
+         input and an output of 0. transmission: the worst angle, 0 to 90°, over the crank's full turn or the part used. \
+         link ratio: longest to shortest link. Pairs count from 0."
+    } else if of_motion {
         "rms error, largest: of the place. angle: of the body. to curve: rms distance of the poses' places to the whole curve \
          of the body's point. transmission: the worst angle, 0 to 90°, over the crank's full turn or the part used. link \
          ratio: longest to shortest link. Poses count from 0."

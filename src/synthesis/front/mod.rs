@@ -312,7 +312,7 @@ impl<'a> Search<'a> {
     /// Takes accepted candidates into the archive, and returns their figures.
     fn take(&mut self, candidates: Vec<(Candidate, Tighter)>) -> Vec<Figures> {
         let problem = self.context.problem;
-        let most = MOST_ERROR * problem.task().size();
+        let most = MOST_ERROR * problem.task().error_size();
         let good: Vec<(Candidate, Tighter)> = candidates
             .into_iter()
             .filter(|(c, _)| c.accepted && c.error.rms <= most)

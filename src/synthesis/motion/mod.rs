@@ -5,10 +5,9 @@
 //! best `LONG` of them to convergence, and has the ends judged, driven from either side. Rounds run in parallel in batches
 //! and are read in their order: the number of threads changes nothing but the time. The search ends when enough rounds
 //! have reached the best answer (or the search has gone on for several times as long as it took to reach it) and as many distinct answers as were asked for are known, or no new one has come for
-//! `QUIET_BATCHES` batches; an exact answer needs no second hit. Where exact answers form a family ([`family`]), several
+//! `QUIET_BATCHES` batches; an exact answer needs no second hit. Where exact answers form a family ([`super::family`]), several
 //! batches are searched and the best answers led to better transmission angles.
 
-mod family;
 mod starts;
 
 use super::belief::{Belief, NEARLY, SAME_OPTIMUM};
@@ -17,6 +16,7 @@ use super::constants::motion::{
     QUIET_BATCHES, QUIET_ROUNDS, QUIET_TIMES, SHORT,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
+use super::family::{climb, freedom};
 use super::moves::near;
 use super::multistart::{LONG_FIT, RoundOutcome, SHORT_FIT, Spender, by_merit, glanced, promise};
 use super::polish::promising;
@@ -28,7 +28,6 @@ use crate::numbers::arithmetic::streams::{Stream, stream};
 use crate::record::{Candidate, Repeats};
 use crate::task::Problem;
 use crate::task::forms::start::Start;
-use family::{climb, freedom};
 pub(super) use starts::DyadStarts;
 use starts::{least_sine, swapped};
 

@@ -4,7 +4,6 @@
 //! minima of the map of circle errors, and dyads through a few sets of five poses. Later rounds draw further sets of five,
 //! and pins at random, each with its best circle. Every two dyads are a linkage, either of them the crank.
 
-use super::family::freedom;
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, CouplerSide, Dyad, Pose};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
@@ -13,6 +12,7 @@ use crate::synthesis::dyads::{
     Pair, circle_fit, circle_minima, nearest_in_kernel, pair, through_four_curve, through_random_five,
     through_three_from_pin,
 };
+use crate::synthesis::family::freedom;
 use crate::task::forms::design_space::Shape;
 use crate::task::forms::rows::{assembly_of, nearest_type};
 use crate::task::forms::start::Start;

@@ -37,6 +37,8 @@ enum GroundChart {
 enum CouplerChart {
     Offset,
     Distances(CouplerSide),
+    /// P in D: its offset is b along the coupler, and there is nothing to choose.
+    FollowerPin,
 }
 
 /// The parameters of a linkage that the search varies: pivots, links and the coupler point in the coupler's frame.
@@ -215,10 +217,14 @@ impl DesignSpace {
             }
         };
         let on_crank_pin = spec.d.is_some_and(|d| d.is_fixed() && d.0 == 0.0);
+        let on_follower_pin = spec.e.is_some_and(|e| e.is_fixed() && e.0 == 0.0);
         let (coupler, [q_1, q_2]) = if on_crank_pin && spec.coupler_x.is_none() && spec.coupler_y.is_none() {
             // P on C: its offset is zero, and e equals b for every b.
             derive(Derived::FollowerSide, spec.e);
             (CouplerChart::Offset, [Limits(0.0, 0.0), Limits(0.0, 0.0)])
+        } else if on_follower_pin && spec.coupler_x.is_none() && spec.coupler_y.is_none() {
+            derive(Derived::CrankSide, spec.d);
+            (CouplerChart::FollowerPin, [Limits(0.0, 0.0), Limits(0.0, 0.0)])
         } else if spec.coupler_x.is_none() && spec.coupler_y.is_none() {
             let distance = |l: Option<Limits>| l.unwrap_or(Limits(0.0, far));
             (CouplerChart::Distances(side), [distance(spec.d), distance(spec.e)])
@@ -282,7 +288,7 @@ impl DesignSpace {
         };
         let [q_1, q_2] = match self.coupler {
             CouplerChart::Offset => ["coupler_x", "coupler_y"],
-            CouplerChart::Distances(_) => ["d", "e"],
+            CouplerChart::Distances(_) | CouplerChart::FollowerPin => ["d", "e"],
         };
         let names = ["Ax", "Ay", g_1, g_2, "a", "b", "c", q_1, q_2];
         names.get(i).map(|&name| (name, self.is_angle(i)))
@@ -307,7 +313,7 @@ impl DesignSpace {
     pub fn is_length(&self, i: usize) -> bool {
         (4..7).contains(&i)
             || (i == 2 && self.ground == GroundChart::Polar)
-            || ((7..9).contains(&i) && self.coupler != CouplerChart::Offset)
+            || ((7..9).contains(&i) && matches!(self.coupler, CouplerChart::Distances(_)))
     }
 
     /// Returns the trust region within which linear models are useful, for a target of this size: a tenth of it for
@@ -335,6 +341,7 @@ impl DesignSpace {
         };
         let offset = match self.coupler {
             CouplerChart::Offset => Complex::new(x[7], x[8]),
+            CouplerChart::FollowerPin => Complex::new(x[5], 0.0),
             CouplerChart::Distances(side) => {
                 let (b, d, e) = (x[5], x[7], x[8]);
                 let along = (d * d + b * b - e * e) / (2.0 * b);
@@ -384,6 +391,7 @@ impl DesignSpace {
         };
         let (q_1, q_2) = match self.coupler {
             CouplerChart::Offset => (shape.offset.re, shape.offset.im),
+            CouplerChart::FollowerPin => (0.0, 0.0),
             CouplerChart::Distances(_) => (length(shape.offset), length(shape.offset - shape.coupler)),
         };
         let a = shape.crank_pivot;
@@ -401,6 +409,8 @@ impl DesignSpace {
         };
         let coupler = match self.coupler {
             CouplerChart::Offset => None,
+            // coupler_x = b
+            CouplerChart::FollowerPin => Some([[1.0, 0.0], [0.0; 2], [0.0; 2]]),
             CouplerChart::Distances(_) => {
                 // coupler_x = (d^2 + b^2 - e^2)/(2b), coupler_y = t2 sqrt(d^2 - coupler_x^2)
                 let (b, d, e) = (x[5], x[7], x[8]);
@@ -446,9 +456,13 @@ impl DesignSpace {
         snap(&mut p.crank, b[4]);
         snap(&mut p.coupler, b[5]);
         snap(&mut p.follower, b[6]);
-        if self.coupler != CouplerChart::Offset {
-            snap(&mut p.crank_side, b[7]);
-            snap(&mut p.follower_side, b[8]);
+        match self.coupler {
+            CouplerChart::Offset => {}
+            CouplerChart::Distances(_) => {
+                snap(&mut p.crank_side, b[7]);
+                snap(&mut p.follower_side, b[8]);
+            }
+            CouplerChart::FollowerPin => (p.crank_side, p.follower_side) = (p.coupler, 0.0),
         }
         FourBar::new(p)
     }

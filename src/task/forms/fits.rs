@@ -1,11 +1,12 @@
-//! The least-squares fit that suits a start: of a path or of a motion, with prescribed or with free timing.
+//! The least-squares fit that suits a start: of a path, of a motion or of a function, with prescribed or
+//! (but for functions) with free timing.
 //!
-//! The four differ in their numbers of unknowns and of rows, which are types. So what is to be done with a fit is a
-//! [`FitUser`], and [`on_fit`] is the one place that tells the four apart.
+//! The five differ in their numbers of unknowns and of rows, which are types. So what is to be done with a fit is a
+//! [`FitUser`], and [`on_fit`] is the one place that tells them apart.
 
 use super::design_space::{DESIGN, Design};
 use super::start::Start;
-use super::timed::{TimedMotionFit, TimedPathFit};
+use super::timed::{FunctionFit, TimedMotionFit, TimedPathFit};
 use super::torus::{MotionFit, PathFit, Positions};
 use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::task::Problem;
@@ -37,6 +38,11 @@ pub fn on_fit<U: FitUser>(problem: &Problem, start: &Start, ordered: bool, user:
     let Start { design, setting, positions } = start;
     match (positions.is_empty(), problem.task().body()) {
         (true, None) => Some(user.on(&TimedPathFit::new(problem, *setting)?, *design)),
+        (true, Some(_)) if problem.is_function() => {
+            let fit = FunctionFit::new(problem, *setting)?;
+            let x = fit.unknowns(design);
+            Some(user.on(&fit, x))
+        }
         (true, Some(_)) => {
             let fit = TimedMotionFit::new(problem, *setting)?;
             let x = fit.unknowns(design);

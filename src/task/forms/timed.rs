@@ -7,13 +7,17 @@
 //! In a motion a target has a third row, the error of the body's angle times the length W that a radian counts like, W
 //! (theta_j - arg u_j - beta). The frame beta, the angle from the coupler's direction to the body's x axis, is an unknown
 //! behind those of the design. The row is zero for a target without an angle.
+//!
+//! A function has the errors of the follower's angle alone, W (s theta_j - arg v_j - beta), in the first of two rows; the
+//! second is zero. Its frame is an unknown too, or the ground line's direction reversed.
 
 use super::design_space::{ChainRule, DESIGN, Design, DesignSpace, SHAPE, Shape, unit};
 use super::fits::{design_of, own_frame};
 use super::rows::{Motion, Requirements};
 use super::torus::{ANGLE_ROW, Positions, angle_residual};
 use crate::mechanism::effort::computed;
-use crate::mechanism::four_bar::gradient::{Frame, coupler_gradient, shape_gradient};
+use crate::mechanism::four_bar::gradient::{Frame, coupler_gradient, follower_gradient, shape_gradient};
+use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{Complex, point, turned, xy};
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
@@ -45,6 +49,8 @@ pub struct TimedFit<'a, const N: usize, const R: usize> {
 pub type TimedPathFit<'a> = TimedFit<'a, DESIGN, 2>;
 /// The fit of a motion.
 pub type TimedMotionFit<'a> = TimedFit<'a, WITH_FRAME, 3>;
+/// The fit of a function.
+pub type FunctionFit<'a> = TimedFit<'a, WITH_FRAME, 2>;
 
 impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
     /// Creates the fit of a problem in a setting; `None` for free timing.
@@ -54,13 +60,19 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
         let requirements = problem.requirements(&space);
         let mut bounds = [(f64::NEG_INFINITY, f64::INFINITY); N];
         bounds[..DESIGN].copy_from_slice(space.bounds());
+        if let Some(frame) = bounds.get_mut(DESIGN)
+            && problem.task().body().and_then(|body| body.given_frame(0.0)).is_some()
+        {
+            *frame = (0.0, 0.0);
+        }
+        let run = problem.run(setting.direction);
         Some(TimedFit {
             problem,
             setting,
             space,
             bounds,
             requirements,
-            angles: crank_angles.iter().map(|psi| setting.direction * psi).collect(),
+            angles: crank_angles.iter().map(|psi| run * psi).collect(),
             phases: problem.phases(setting.direction),
             offset: *offset,
         })
@@ -76,7 +88,8 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
         &self.requirements
     }
 
-    /// Returns the unknowns at a design; the frame of a body is that of the least errors, 0 if the loop is open at a target.
+    /// Returns the unknowns at a design; the frame of a body is that of the least errors, 0 if the loop is open at a target or
+    /// the frame is no unknown.
     pub fn unknowns(&self, design: &Design) -> [f64; N] {
         let mut x = [0.0; N];
         x[..DESIGN].copy_from_slice(design);
@@ -88,14 +101,16 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
 
     /// Returns the frame of the body for which the weighted sum of squared angle errors is least.
     fn frame_of(&self, design: &Design) -> Option<f64> {
-        let body = self.problem.task().body()?;
+        let body = self.problem.task().body().filter(|body| body.given_frame(0.0).is_none())?;
+        let sign = self.sign();
         let shape = self.space.shape(design)?;
         let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(design, &shape));
         let apart = |(phase, angle): (&Complex, &Option<f64>)| {
             let crank = phase * turn;
             let at = kernel.at(crank.re, crank.im);
-            Some((*angle)? - (point(at.follower_pin) - point(at.crank_pin)).arg())
+            let joints = [shape.follower_pivot, point(at.crank_pin), point(at.follower_pin)];
+            Some(sign * (*angle)? - body.line(joints).arg())
         };
         let apart: Vec<Option<f64>> = self.phases.iter().zip(&body.angles).map(apart).collect();
         Some(best_frame(&apart, self.problem.task().weights())).filter(|frame| frame.is_finite())
@@ -159,6 +174,92 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
     fn body(&self) -> Option<&Body> {
         self.problem.task().body().filter(|_| R > ANGLE_ROW)
     }
+
+    /// Returns the outputs of a function.
+    fn output(&self) -> Option<&Body> {
+        self.problem.task().body().filter(|_| self.problem.is_function())
+    }
+
+    /// Returns the sign of the angles wanted.
+    fn sign(&self) -> f64 {
+        if self.problem.is_function() { self.setting.direction } else { 1.0 }
+    }
+
+    /// Returns W (s theta_j - arg v - beta) of a target of a function, the angle within half a turn; `ground` is the
+    /// direction of the ground line.
+    fn output_residual(&self, output: &Body, j: usize, follower: Complex, beta: f64, ground: f64) -> f64 {
+        let beta = output.given_frame(ground).unwrap_or(beta);
+        let error = |angle: f64| wrapped(self.sign() * angle - follower.arg() - beta);
+        output.angles[j].map_or(0.0, |angle| output.angle_weight * error(angle))
+    }
+
+    /// As [`BlockLeastSquares::cost`], of a function.
+    fn cost_of_output(&self, output: &Body, unknowns: &[f64; N], shape: &Shape) -> Option<f64> {
+        let kernel = shape.kernel(self.setting.assembly);
+        let turn = Complex::from_polar(1.0, self.offset(&design_of(unknowns), shape));
+        let ground = (shape.follower_pivot - shape.crank_pivot).arg();
+        let mut cost = 0.0;
+        for (j, (phase, weight)) in self.phases.iter().zip(self.problem.task().weights()).enumerate() {
+            let crank = phase * turn;
+            let at = kernel.at(crank.re, crank.im);
+            if at.gap.is_nan() || at.gap <= 0.0 {
+                return None;
+            }
+            let follower = point(at.follower_pin) - shape.follower_pivot;
+            cost += weight * self.output_residual(output, j, follower, unknowns[N - 1], ground).powi(2);
+        }
+        cost.is_finite().then_some(cost)
+    }
+
+    /// As [`BlockLeastSquares::linearise`], of a function.
+    fn linearise_output(
+        &self,
+        output: &Body,
+        unknowns: &[f64; N],
+        shape: &Shape,
+        each: &mut dyn FnMut(&PointBlock<N, R>),
+    ) -> bool {
+        let x = &design_of(unknowns);
+        let kernel = shape.kernel(self.setting.assembly);
+        let turn = Complex::from_polar(1.0, self.offset(x, shape));
+        let ground = (shape.follower_pivot - shape.crank_pivot).arg();
+        let (rule, by_ground_angle) = (self.space.chain_rule(x, shape), Self::by_ground_angle(shape));
+        let counts_from_ground = output.given_frame(0.0).is_some();
+        for (j, (phase, weight)) in self.phases.iter().zip(self.problem.task().weights()).enumerate() {
+            let crank = phase * turn;
+            let at = kernel.at(crank.re, crank.im);
+            let [c, d] = [at.crank_pin, at.follower_pin].map(point);
+            let frame = Frame {
+                crank,
+                coupler: (d - c) / shape.coupler,
+                follower: (d - shape.follower_pivot) / shape.follower,
+            };
+            let Some((mut by_shape, by_crank)) = follower_gradient(&frame, shape.crank, shape.follower)
+            else {
+                return false;
+            };
+            if counts_from_ground {
+                // The error is s theta - (arg v - gamma), and the ground's direction gamma moves with A and B.
+                let by = [-by_ground_angle.re, -by_ground_angle.im, by_ground_angle.re, by_ground_angle.im];
+                by_shape.iter_mut().zip(by).for_each(|(total, by)| *total -= by);
+            }
+            let length = output.angle_weight;
+            let mut block = PointBlock {
+                residual: [0.0; R],
+                jacobian: [[0.0; N]; R],
+                tangent: [0.0; R],
+                weight: *weight,
+            };
+            block.residual[0] = self.output_residual(output, j, frame.follower, unknowns[N - 1], ground);
+            block.jacobian[0] =
+                self.by_design(&rule, by_shape.map(|by| -length * by), -length * by_crank, by_ground_angle);
+            if !counts_from_ground {
+                block.jacobian[0][N - 1] = -length;
+            }
+            each(&block);
+        }
+        true
+    }
 }
 
 impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N, R> {
@@ -176,10 +277,13 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
     fn cost(&self, unknowns: &[f64; N], _: &Positions) -> Option<f64> {
         let x = &design_of(unknowns);
         let shape = self.space.shape(x)?;
-        let kernel = shape.kernel(self.setting.assembly);
-        let turn = Complex::from_polar(1.0, self.offset(x, &shape));
         let (task, body) = (self.problem.task(), self.body());
         computed(task.len());
+        if let Some(output) = self.output() {
+            return self.cost_of_output(output, unknowns, &shape);
+        }
+        let kernel = shape.kernel(self.setting.assembly);
+        let turn = Complex::from_polar(1.0, self.offset(x, &shape));
         let mut cost = 0.0;
         let targets = self.phases.iter().zip(task.points()).zip(task.weights());
         for (j, ((phase, target), weight)) in targets.enumerate() {
@@ -202,11 +306,14 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
     fn linearise(&self, unknowns: &[f64; N], _: &Positions, each: &mut dyn FnMut(&PointBlock<N, R>)) -> bool {
         let x = &design_of(unknowns);
         let Some(shape) = self.space.shape(x) else { return false };
+        let (task, body) = (self.problem.task(), self.body());
+        computed(task.len());
+        if let Some(output) = self.output() {
+            return self.linearise_output(output, unknowns, &shape, each);
+        }
         let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(x, &shape));
-        let (task, body) = (self.problem.task(), self.body());
         let (rule, by_ground_angle) = (self.space.chain_rule(x, &shape), Self::by_ground_angle(&shape));
-        computed(task.len());
         let targets = self.phases.iter().zip(task.points()).zip(task.weights());
         for (j, ((phase, target), weight)) in targets.enumerate() {
             let crank = phase * turn;

@@ -104,10 +104,10 @@ impl RequirementKind {
         Self::TOLERANCES.iter().any(|kind| kind.name() == name)
     }
 
-    /// Returns its key in the file of a problem: the tolerance of the place is one of its task's table.
+    /// Returns its key in the file of a problem: a tolerance is one of its task's table.
     pub fn key_in(self, spec: &ProblemSpec) -> String {
         match self {
-            Self::Tolerance => format!("{}.tolerance", spec.task.table()),
+            Self::Tolerance | Self::ToleranceDeg => format!("{}.{}", spec.task.table(), self.name()),
             other => other.definition().key.to_owned(),
         }
     }
@@ -147,9 +147,12 @@ impl RequirementKind {
 
     /// Returns the kind with this key in a problem file.
     pub fn with_key(key: &str) -> Option<RequirementKind> {
-        const OF_A_MOTION: &str = "task.motion.tolerance";
         let found = Self::IN_CONFLICTS.into_iter().find(|kind| kind.definition().key == key);
-        found.or((key == OF_A_MOTION).then_some(Self::Tolerance))
+        found.or(match key {
+            "task.motion.tolerance" => Some(Self::Tolerance),
+            "task.function.tolerance_deg" => Some(Self::ToleranceDeg),
+            _ => None,
+        })
     }
 
     /// Returns its name in a record: the key in its table.

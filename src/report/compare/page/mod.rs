@@ -48,8 +48,8 @@ impl Comparison {
         let title = self.title();
         let points = self.rows.first().filter(|_| self.same_target());
         let points = points.map(|row| {
-            let noun = if row.entry.body.is_some() { "poses" } else { "points" };
-            format!("{} target {noun}; ", row.entry.target.len())
+            let count = row.entry.target.len().max(row.entry.pairs.len());
+            format!("{count} target {}s; ", row.entry.noun)
         });
         let notes = self.notes();
         let body = html! {
@@ -147,7 +147,11 @@ impl Comparison {
             [_] => Vec::new(),
             several => several.iter().map(|key| format!("rank by {}", key.name())).collect(),
         };
-        let at = if self.has_angles() { "at which pose" } else { "at which point" };
+        let at = match self.rows.first().map(|row| row.entry.noun) {
+            _ if self.has_angles() => "at which pose",
+            Some("pair") => "at which pair",
+            _ => "at which point",
+        };
         let mut columns = vec![
             Column::new("behind", |_, row| Cell::number(row.behind_percent, tables::behind(row)))
                 .said("behind the best, per cent"),

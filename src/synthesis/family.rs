@@ -1,7 +1,8 @@
 //! Families of exact answers: fewer equations than free parameters, so that among all linkages that meet the targets the
 //! best transmitting one is wanted.
 //!
-//! A pose gives three equations and a place two, and each target takes one of them for its own crank angle. Exact answers
+//! A pose gives three equations and a place two, and each target takes one of them for its own crank angle; a pair of a
+//! function gives one. Exact answers
 //! that the rounds have found are led along their family: the least transmission angle asked for is raised step by step
 //! and the linkage fitted again, for as long as it stays exact; then the step is halved.
 
@@ -17,10 +18,15 @@ use rayon::prelude::*;
 /// Returns the number of free parameters that are left when all targets are met; 0 if there are equations enough.
 pub(super) fn freedom(problem: &Problem) -> usize {
     let task = problem.task();
+    let space = problem.space(problem.sides()[0]);
+    let free = space.bounds().iter().filter(|(low, high)| low < high).count();
+    if let Some(output) = task.body().filter(|_| task.is_function()) {
+        let unknowns = free + usize::from(output.given_frame(0.0).is_none());
+        return unknowns.saturating_sub(task.len());
+    }
     let angles = task.body().map_or(&[][..], |body| &body.angles);
     let equations = task.len() + angles.iter().flatten().count();
-    let space = problem.space(problem.sides()[0]);
-    space.bounds().iter().filter(|(low, high)| low < high).count().saturating_sub(equations)
+    free.saturating_sub(equations)
 }
 
 /// Leads the best exact candidates to better transmission angles, with at most `left` evaluations; returns the evaluations

@@ -7,11 +7,11 @@ use crate::report::scene::round_length;
 use crate::report::text::{brief, text_width, xml};
 
 /// A series: values at crank angles, in the order of the angles.
-pub(super) struct Series {
-    pub(super) name: &'static str,
-    pub(super) colour: &'static str,
+pub(in crate::report) struct Series {
+    pub(in crate::report) name: &'static str,
+    pub(in crate::report) colour: &'static str,
     /// The stretches without a gap, (crank angle in degrees, value).
-    pub(super) strands: Vec<Vec<(f64, f64)>>,
+    pub(in crate::report) strands: Vec<Vec<(f64, f64)>>,
 }
 
 impl Series {
@@ -22,7 +22,7 @@ impl Series {
 
 /// The range of the vertical axis.
 #[derive(Clone, Copy)]
-pub(super) enum Range {
+pub(in crate::report) enum Range {
     /// Fixed bounds, with ticks this far apart.
     Fixed { low: f64, high: f64, tick: f64 },
     /// The range of the values, or about `natural` wide if they are constant; angles have ticks at parts of a turn. If
@@ -31,22 +31,22 @@ pub(super) enum Range {
 }
 
 /// The horizontal axis that all charts of a sheet share.
-pub(super) struct Abscissa {
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(in crate::report) struct Abscissa {
+    pub(in crate::report) low: f64,
+    pub(in crate::report) high: f64,
     /// The ranges of crank angles out of reach, within [low, high].
-    pub(super) unreachable: Vec<(f64, f64)>,
+    pub(in crate::report) unreachable: Vec<(f64, f64)>,
     /// The crank angles of toggles, within [low, high].
-    pub(super) toggles: Vec<f64>,
+    pub(in crate::report) toggles: Vec<f64>,
 }
 
-pub(super) struct Chart {
-    pub(super) title: &'static str,
-    pub(super) unit: String,
-    pub(super) series: Vec<Series>,
-    pub(super) range: Range,
+pub(in crate::report) struct Chart {
+    pub(in crate::report) title: &'static str,
+    pub(in crate::report) unit: String,
+    pub(in crate::report) series: Vec<Series>,
+    pub(in crate::report) range: Range,
     /// The ranges of values that are shaded as a warning.
-    pub(super) warning: Vec<(f64, f64)>,
+    pub(in crate::report) warning: Vec<(f64, f64)>,
 }
 
 /// The space for the numbers left of and below the plot, and for the title above.
@@ -61,7 +61,7 @@ const WORTH_CUTTING: f64 = 3.0;
 const DEGREE_STEPS: [f64; 13] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0];
 
 impl Chart {
-    pub(super) fn draw(&self, canvas: &mut Canvas, abscissa: &Abscissa, area: Area) {
+    pub(in crate::report) fn draw(&self, canvas: &mut Canvas, abscissa: &Abscissa, area: Area) {
         let plot = Area {
             x: area.x + LEFT,
             y: area.y + ABOVE,

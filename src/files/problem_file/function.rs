@@ -1,0 +1,145 @@
+//! Reads `[task.function]`: the pairs from their source or of a formula, with weights and tolerances.
+
+use super::lists::Lists;
+use super::path::{TaskRead, task_read};
+use super::raw::RawFunction;
+use super::target::{Source, Target, Whereabouts};
+use crate::files::diagnostic::{Checked, quoted};
+use crate::files::points_file::MAX_POINTS;
+use crate::files::toml_text::TomlText;
+use crate::files::toml_values::numbers;
+use crate::task::AngleOffset;
+use crate::task::spec::{BodySpec, DEGREES, FormulaSpec, OutputSpec, TaskSpec, TimingSpec};
+use exmex::prelude::*;
+
+/// The number of pairs taken of a formula where the file is silent.
+const SAMPLES: u64 = 61;
+/// The most characters of a formula.
+const LONGEST_FORMULA: usize = 1000;
+/// The largest angle that may be written, degrees: a hundred turns.
+const MOST_DEG: f64 = 36_000.0;
+
+/// Returns the function with its lists, and the task that it is. A tolerance that is set on the command line takes the place
+/// of the column of a file of pairs.
+pub(super) fn function_of(
+    toml: &TomlText<'_>,
+    function: &RawFunction,
+    whereabouts: &Whereabouts<'_>,
+    is_set: impl Fn(&str) -> bool,
+) -> Checked<TaskRead> {
+    for (key, offset) in [("input_offset", function.input_offset), ("output_offset", function.output_offset)]
+    {
+        if offset == AngleOffset::Fixed {
+            let message = format!("{key} = \"fixed\": angles of a function do not count from the x axis");
+            let help = "write \"free\", or \"ground\" to count from the line A to B";
+            return toml.refuse(&format!("task.function.{key}"), message, help);
+        }
+    }
+    let mut target = Target::of_function(toml, function, whereabouts)?;
+    for (j, pair) in target.points.iter().enumerate() {
+        if let Some(angle) = pair.iter().find(|angle| angle.abs() > MOST_DEG) {
+            let message = format!("pair {}: {angle} degrees is more than a hundred turns", j + 1);
+            let help = "write the angles in degrees, as far as crank and follower turn";
+            return Err(Box::new(target.at_point(toml, j, message).with_help(help)));
+        }
+    }
+    let mut columns = [None, None];
+    if let Source::Csv(csv) = &mut target.source {
+        columns = [&mut csv.weight, &mut csv.tolerance_deg].map(Option::take);
+    }
+    let [weight, tolerance_deg] = columns;
+    let tolerance_deg = tolerance_deg.filter(|_| !is_set("task.function.tolerance_deg"));
+    let lists = Lists { toml, target: &target, file: function.file.as_deref() };
+    let words = ["tolerance of the output", "an angle's error"];
+    let tolerance_deg =
+        lists.tolerances("tolerance_deg", words, function.tolerance_deg.as_ref(), tolerance_deg)?;
+    let weight = lists.weights(function.weight.as_deref().map(numbers), weight)?;
+    let (crank_deg, angle_deg) =
+        std::mem::take(&mut target.points).into_iter().map(|[input, output]| (input, Some(output))).unzip();
+    let of =
+        function.of.clone().zip(function.over).map(|(formula, over)| FormulaSpec { formula, over: over.0 });
+    let spec = TaskSpec {
+        weight,
+        timing: Some(TimingSpec { crank_deg, offset: function.input_offset }),
+        body: Some(BodySpec { angle_deg, angle_weight: DEGREES, tolerance_deg }),
+        output: Some(OutputSpec { offset: function.output_offset, sense: function.sense, of }),
+        ..TaskSpec::default()
+    };
+    task_read(toml, target, spec)
+}
+
+/// Returns the pairs of a formula y = f(x), evenly in x: the input turns in proportion to x, the output to y.
+pub(super) fn of_formula(toml: &TomlText<'_>, function: &RawFunction) -> Checked<Vec<[f64; 2]>> {
+    let key = |key: &str| format!("task.function.{key}");
+    let refuse = |at: &str, message: String, help: &str| toml.refuse(&key(at), message, help);
+    let formula = function.of.as_deref().unwrap_or_default();
+    let Some(over) = function.over.map(|over| over.0) else {
+        let help = "add over = [first x, last x]";
+        return refuse("of", "the formula has no range".into(), help);
+    };
+    if over[0] == over[1] {
+        let message = format!("over = [{0}, {0}]: the range is empty", over[0]);
+        return refuse("over", message, "write the first and the last x of the formula");
+    }
+    let range = |name: &str, given: Option<f64>, link: &str| match given {
+        None => {
+            let help = format!("add {name} = how far the {link} turns, degrees");
+            toml.refuse_key("task.function", format!("{name} is missing"), help)
+        }
+        Some(range) if range == 0.0 || range.abs() > MOST_DEG => {
+            let message = format!("{name} = {range}: the {link} turns by no such angle");
+            toml.refuse(&key(name), message, "write degrees, such as 60 or 90")
+        }
+        Some(range) => Ok(range),
+    };
+    let input = range("input_range_deg", function.input_range_deg.map(|range| range.0), "crank")?;
+    let output = range("output_range_deg", function.output_range_deg.map(|range| range.0), "follower")?;
+    let samples = function.samples.as_ref().map_or(SAMPLES, |count| count.0);
+    if !(2..=MAX_POINTS as u64).contains(&samples) {
+        let message = format!("samples = {samples} is not between 2 and {MAX_POINTS}");
+        return refuse("samples", message, "61 are usual");
+    }
+    let help =
+        "write a formula in x such as x^1.5, log10(x) or sin(x*PI/180); angles of sin and cos are in radians";
+    if formula.chars().count() > LONGEST_FORMULA {
+        let message = format!("the formula is longer than {LONGEST_FORMULA} characters");
+        return refuse("of", message, help);
+    }
+    let read = match exmex::parse::<f64>(formula) {
+        Ok(read) => read,
+        Err(error) => {
+            return refuse("of", format!("{} cannot be read: {}", quoted(formula), error.msg()), help);
+        }
+    };
+    if let Some(other) = read.var_names().iter().find(|name| *name != "x") {
+        let message = format!("{} has the unknown name {}", quoted(formula), quoted(other));
+        return refuse("of", message, help);
+    }
+    if read.var_names().is_empty() {
+        let message = format!("{} is constant: it has no x", quoted(formula));
+        return refuse("of", message, help);
+    }
+    let last = (samples - 1) as f64;
+    let mut values = Vec::with_capacity(samples as usize);
+    for k in 0..samples {
+        let x = over[0] + (over[1] - over[0]) * k as f64 / last;
+        match read.eval(&[x]) {
+            Ok(y) if y.is_finite() => values.push(y),
+            Ok(y) => {
+                let message = format!("{} is {y} at x = {x}", quoted(formula));
+                return refuse("of", message, "choose a range (over) in which the formula has finite values");
+            }
+            Err(error) => return refuse("of", format!("{}: {}", quoted(formula), error.msg()), help),
+        }
+    }
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(*y), high.max(*y)));
+    let height = high - low;
+    if !(height > 0.0 && height.is_finite()) {
+        let message = format!("{} is {low} all over its range", quoted(formula));
+        return refuse("of", message, "a follower that stands still needs no linkage");
+    }
+    let first = values[0];
+    let pair = |(k, y): (usize, &f64)| [input * k as f64 / last, output * ((y - first) / height)];
+    Ok(values.iter().enumerate().map(pair).collect())
+}
