@@ -23,7 +23,7 @@ fn problem(n: usize, timed: bool) -> Problem {
     let points =
         (0..n).map(|i| [2.0 * angle(i).cos() + 0.3 * (2.0 * angle(i)).cos(), angle(i).sin()]).collect();
     let crank_deg = (0..n).map(|i| angle(i).to_degrees()).collect();
-    let timing = timed.then_some(TimingSpec { crank_deg, offset: AngleOffset::Free });
+    let timing = timed.then_some(TimingSpec { crank_deg, offset: AngleOffset::Free, free: Vec::new() });
     let task = TaskSpec { timing, ..TaskSpec::path(points, true) };
     let mut design = DesignSpec::default();
     design.resolve(&task.to_task().expect("the target is a path"));

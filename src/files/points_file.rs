@@ -19,8 +19,9 @@ const COLUMNS: Layout = Layout {
 /// The columns of a file of pairs.
 const PAIRS: Layout =
     Layout { columns: ["input_deg", "output_deg", "", "weight", "", "", "tolerance_deg"], one: "pair" };
-/// The column whose cells may be empty.
+/// The columns whose cells may be empty.
 const ANGLE: usize = 5;
+const CRANK: usize = 2;
 
 /// The columns that are read from a file, by their places in [`PointsFile`], and the word for one row.
 #[derive(Clone, Copy)]
@@ -45,8 +46,8 @@ pub struct PointsFile {
     pub text: String,
     /// The points; of pairs the input and the output, degrees.
     pub points: Vec<[f64; 2]>,
-    /// The crank angle at each point, in degrees.
-    pub crank_deg: Option<Vec<f64>>,
+    /// The crank angle at each point, in degrees; `None` where the cell is empty.
+    pub crank_deg: Option<Vec<Option<f64>>>,
     /// The weight of each point.
     pub weight: Option<Vec<f64>>,
     /// The largest error accepted at each point.
@@ -125,6 +126,7 @@ fn parse_as(layout: &Layout, file: &str, text: &str) -> Result<PointsFile, Box<D
     let columns = Columns::of(&table, &header, layout)?;
     let mut values = columns.place.map(|place| place.map(|_| Vec::new()));
     let mut angles = columns.place[ANGLE].map(|_| Vec::new());
+    let mut cranks = columns.place[CRANK].map(|_| Vec::new());
     let mut rows = Vec::new();
     while let Some(row) = table.next_row()? {
         // Spreadsheets leave empty cells at the end, and leave out cells of columns that are not read.
@@ -142,16 +144,16 @@ fn parse_as(layout: &Layout, file: &str, text: &str) -> Result<PointsFile, Box<D
                 help,
             ));
         }
-        if let (Some(place), Some(list)) = (columns.place[ANGLE], &mut angles) {
-            let is_empty = row.cells.get(place).is_none_or(String::is_empty);
-            list.push(if is_empty {
-                None
-            } else {
-                Some(table.number(&row, place, layout.columns[ANGLE])?)
-            });
+        for (column, list) in [(ANGLE, &mut angles), (CRANK, &mut cranks)] {
+            if let (Some(place), Some(list)) = (columns.place[column], list) {
+                let is_empty = row.cells.get(place).is_none_or(String::is_empty);
+                let name = layout.columns[column];
+                list.push(if is_empty { None } else { Some(table.number(&row, place, name)?) });
+            }
         }
         for ((name, place), list) in layout.columns.iter().zip(columns.place).zip(&mut values) {
-            let (Some(place), Some(list)) = (place.filter(|_| *name != layout.columns[ANGLE]), list) else {
+            let may_be_empty = [ANGLE, CRANK].iter().any(|column| layout.columns[*column] == *name);
+            let (Some(place), Some(list)) = (place.filter(|_| !may_be_empty), list) else {
                 continue;
             };
             let value = table.number(&row, place, name)?;
@@ -171,10 +173,10 @@ fn parse_as(layout: &Layout, file: &str, text: &str) -> Result<PointsFile, Box<D
         let help = format!("write one {} a line, such as 1.5,2", layout.one);
         return Err(table.at(header.span, format!("there are no {}s under the header", layout.one), help));
     }
-    let [x, y, crank_deg, weight, tolerance, _, tolerance_deg] = values;
+    let [x, y, _, weight, tolerance, _, tolerance_deg] = values;
     let points = x.into_iter().flatten().zip(y.into_iter().flatten()).map(|(x, y)| [x, y]).collect();
     let (file, text) = (file.to_owned(), text.to_owned());
-    let (angle_deg, warnings) = (angles, columns.warnings);
+    let (angle_deg, crank_deg, warnings) = (angles, cranks, columns.warnings);
     Ok(PointsFile {
         file,
         text,

@@ -30,6 +30,7 @@ closed = false                  # true: the motion returns to the first pose
 tolerance = 3                   # the largest error of the place accepted at any pose; remove to take the best there is
 tolerance_deg = 1               # and of the angle
 # angle_weight = 300            # a length: an angle error of one radian counts like it; where silent, the target's size
+# exact = [0, 4]                # these poses are met exactly, the others as nearly as that allows; they count from 0
 # weight = [1, 1, 1, 1, 5]      # one a pose: the last counts five times
 ";
 

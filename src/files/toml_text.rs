@@ -19,8 +19,6 @@ pub(crate) struct TomlText<'a> {
 
 /// The keys of `[task.function]` that are known but not supported yet.
 const FUNCTION_TO_COME: [&str; 1] = ["output"];
-/// The keys of `[task.motion]` that are known but not supported yet.
-const MOTION_TO_COME: [&str; 1] = ["exact"];
 
 /// A key, or an item of a list, with its places in the text.
 struct Place<'p> {
@@ -170,11 +168,6 @@ impl<'a> TomlText<'a> {
     }
 
     fn unknown_key(&self, key: &str, allowed: &[&str], span: Option<&Range<usize>>) -> Diagnostic {
-        if MOTION_TO_COME.contains(&key) && allowed.contains(&"poses") {
-            return self
-                .about_file(format!("{key} is not supported yet in [task.motion]"))
-                .with_help("remove it: poses are approached, all alike; a large weight, or a small tolerance, brings one nearer");
-        }
         if FUNCTION_TO_COME.contains(&key) && allowed.contains(&"output_deg") {
             return self.about_file(format!("{key} is not supported yet in [task.function]")).with_help(
                 "the output is the follower's angle: write output_deg; a slider as output is still to come",

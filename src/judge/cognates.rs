@@ -123,7 +123,7 @@ pub fn not_met(candidate: &Candidate) -> Vec<String> {
 /// they share the distances to the whole curve, since the curve is the same. A motion has none: the couplers of cognates
 /// turn differently.
 pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
-    if problem.task().body().is_some() {
+    if problem.task().body().is_some() || problem.task().is_partly_timed() {
         return Vec::new();
     }
     let Some((angle, t1)) = candidate.crank_deg.first().zip(candidate.t1_at.first()) else {

@@ -1,7 +1,6 @@
 //! Figures by which linkages are compared in a front, computed from a judged candidate alone.
 
-use crate::judge::practicality::crank_of;
-use crate::judge::practicality::sensitivity::{At, sensitivity};
+use crate::judge::practicality::sensitivity_of;
 use crate::judge::referee::judge;
 use crate::mechanism::FourBar;
 use crate::record::{Candidate, Figures};
@@ -22,7 +21,7 @@ pub fn longest(linkage: &FourBar) -> f64 {
 
 /// Returns all figures of a candidate; `None` if the path has no direction at any point (every point is at a toggle).
 pub fn figures(problem: &Problem, candidate: &Candidate) -> Option<Figures> {
-    let felt = sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem))?;
+    let felt = sensitivity_of(problem, candidate)?;
     Some(Figures {
         rms: candidate.error.rms,
         max: candidate.error.max,

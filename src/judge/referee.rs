@@ -5,7 +5,8 @@
 //! here uses an optimiser: every verdict follows from the linkage and its positions alone. Searches use the referee:
 //! they rank by its verdicts and keep the same [`ORDER_TOLERANCE`].
 //!
-//! *Order* is judged if the timing is free (prescribed angles are an order by themselves, but for a closed target): the parameter of the circuit
+//! *Order* is judged if the timing is free (prescribed angles are an order by themselves, but for a closed target, and for
+//! targets among them whose angles are free): the parameter of the circuit
 //! (the crank angle, or psi if the input rocks) must run one way through the points and less than once around.
 //!
 //! A target that ends where it begins ([`Task::returns`]) has one step more, from its last point back to its first,
@@ -100,14 +101,16 @@ pub fn judge(task: &Task, linkage: &FourBar, crank_angles: &[f64], assemblies: &
             course.range[1] = course.range[1].max(course.range[0] + TAU);
         }
         if !task.closed() || comes_back == Return::Any {
-            course.jumps.clear();
+            course.jumps.retain(|j| is_out_of_turn(task, *j));
         }
         course
     } else if prescribed || !off_circuit.is_empty() {
         to_and_fro = task.returns() && rocks && (one_branch || !off_circuit.is_empty());
         // The hull of the parameters used; within a branch psi is monotone in the crank angle.
         let direction = if crank_angles[n - 1] < crank_angles[0] { -1.0 } else { 1.0 };
-        Course { direction, jumps: Vec::new(), ..Course::within_a_branch(&parameter) }
+        let mut course = Course { direction, ..Course::within_a_branch(&parameter) };
+        course.jumps.retain(|j| prescribed && is_out_of_turn(task, *j));
+        course
     } else {
         let within = one_branch.then(|| Course::within_a_branch(&parameter[..ordered]));
         match within {
@@ -161,6 +164,12 @@ pub fn judge(task: &Task, linkage: &FourBar, crank_angles: &[f64], assemblies: &
     let moves = course.range[1] - course.range[0] > ORDER_TOLERANCE;
     let direction = if moves { course.direction } else { 0.0 };
     Verdict { defects, direction, to_and_fro, motion }
+}
+
+/// Returns whether a step back to a target is one that its crank angles do not ask for: they are free there, or at the target
+/// before it.
+fn is_out_of_turn(task: &Task, j: usize) -> bool {
+    task.is_untimed(j) || j.checked_sub(1).is_some_and(|before| task.is_untimed(before))
 }
 
 /// Returns the parameter of the circuit at each point: the crank angle, or psi of the arc on which the input rocks.

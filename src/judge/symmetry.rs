@@ -50,7 +50,7 @@ impl Symmetries {
     pub fn of(problem: &Problem) -> Self {
         let task = problem.task();
         let all = task.points();
-        if all.len() > MOST_POINTS || task.body().is_some() {
+        if all.len() > MOST_POINTS || task.body().is_some() || task.is_partly_timed() {
             return Symmetries::default();
         }
         // The closing point is the first one again.

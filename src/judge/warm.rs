@@ -37,6 +37,7 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
     let setting = Setting { aim, assembly: candidate.t1_at[0], direction, side };
     let design = problem.space(side).design(&shape, offset);
     let positions = match problem.task().timing() {
+        Timing::Prescribed { .. } if problem.task().is_partly_timed() => positions(candidate, &as_it_is)?,
         Timing::Prescribed { .. } => Vec::new(),
         Timing::Free => {
             // A design that was shortened or clamped to its bounds has other curves.
@@ -56,8 +57,9 @@ fn direction_and_offset(problem: &Problem, crank_deg: &[f64], sense: Option<Sens
         return (sense.signs()[0], if problem.offset_is_free() { offset } else { 0.0 });
     }
     let written = &timing.crank_deg;
+    let is_timed = |(j, pair)| (!problem.task().is_untimed(j)).then_some(pair);
     let off = |direction: f64| {
-        let steps = crank_deg.iter().zip(written);
+        let steps = crank_deg.iter().zip(written).enumerate().filter_map(is_timed);
         steps
             .map(|(has, asks)| ((has - crank_deg[0]) - direction * (asks - written[0])).abs())
             .fold(0.0, f64::max)

@@ -39,8 +39,8 @@ pub fn front_text(record: &Record, colour: Colour) -> String {
 /// The meaning of the columns.
 const COLUMNS_MEAN: &str = "rms, max: the error. transmission: the worst angle, from 0 to 90°; large is good. extent: the \
     diagonal of the box of all joints and P over the motion used. longest: the longest of ground, a, b, c, d and e. ratio: \
-    longest to shortest link. sensitivity: how far the path moves (rms) for independent errors of all dimensions, per unit \
-    of their standard deviation. knee: a little more of one wish costs much of another on either side.";
+    longest to shortest link. sensitivity: how far the path moves (rms; of a function: how much the output changes, in \
+    degrees) for independent errors of all dimensions, per unit of their standard deviation. knee: a little more of one wish costs much of another on either side.";
 
 /// The limits that hold for all members.
 pub(super) const LIMITS: &str = "Every one meets all requirements of the problem.";

@@ -38,11 +38,8 @@ pub fn practicality_text(
         Some(distances) => out.push_str(&words.distances(distances, 2.0 * practicality.build.pin_radius)),
         None => out.push_str(OPEN),
     }
-    // What moves the path says nothing about a function.
-    if practicality.noun == "pair" {
-        return out;
-    }
-    out.push_str(&words.head("How much a wrong dimension moves the path"));
+    let moved = if practicality.noun == "pair" { "turns the follower" } else { "moves the path" };
+    out.push_str(&words.head(&format!("How much a wrong dimension {moved}")));
     match &practicality.sensitivity {
         Some(felt) => out.push_str(&words.sensitivity(felt, practicality, tolerance)),
         None => out.push_str(
@@ -193,7 +190,11 @@ impl Words {
     }
 
     fn sensitivity(&self, felt: &Sensitivity, practicality: &Practicality, tolerance: f64) -> String {
-        let at_target = if practicality.noun == "pose" { "at pose" } else { "at point" };
+        let at_target = match practicality.noun {
+            "pose" => "at pose",
+            "pair" => "at pair",
+            _ => "at point",
+        };
         let worst = felt.worst_dimension().name;
         let ink = |d: &Dimension| match d.name {
             name if name == felt.ground.name => Ink::Faint,
@@ -219,12 +220,17 @@ impl Words {
         let worst = felt.worst_dimension().name;
         let (at_points, noun) = (practicality.at_points, practicality.noun);
         let most = if at_points { format!(" at {noun} {}", felt.worst_at) } else { String::new() };
+        let off = |value: f64| match noun {
+            "pair" => format!("{}°", significant(value, DIGITS)),
+            _ => self.length(value),
+        };
+        let what = if noun == "pair" { "the output" } else { "the path" };
         let mut text = format!(
             "The worst dimension is {worst}. With every dimension off by {} (1 sigma, the nine above independent of \
-             each other) the path is off by {} rms, {} where it is most{most} (1 sigma).",
+             each other) {what} is off by {} rms, {} where it is most{most} (1 sigma).",
             self.length(tolerance),
-            self.length(tolerance * felt.band),
-            self.length(tolerance * felt.worst)
+            off(tolerance * felt.band),
+            off(tolerance * felt.worst)
         );
         if felt.dimensions.iter().any(|d| d.name == "coupler_x") {
             text.push_str(" P lies nearly on the line C-D, where d and e hardly say where: coupler_x and coupler_y are P along and across it.");
@@ -242,6 +248,12 @@ impl Words {
 /// Returns the description of the table of sensitivities.
 pub(super) fn shift(felt: &Sensitivity, noun: &str) -> String {
     let settled = settles(felt.crank).replace("point", noun);
+    if noun == "pair" {
+        let settled = settled.replace("pairs move", "outputs change");
+        return format!(
+            "Change of the output, in degrees, for an error of 1 in each dimension alone, {settled}."
+        );
+    }
     format!("Shift of the path for an error of 1 in each dimension alone, {settled}.")
 }
 

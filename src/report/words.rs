@@ -475,8 +475,13 @@ pub(super) fn timing(record: &Record) -> &'static str {
             (true, true) => "both from the line A-B",
         };
     }
-    match record.problem.resolved.task.timing.as_ref().map(|timing| timing.offset) {
+    let timing = record.problem.resolved.task.timing.as_ref();
+    let is_partly = timing.is_some_and(|timing| !timing.free.is_empty());
+    match timing.map(|timing| timing.offset) {
         None => "free timing",
+        Some(AngleOffset::Free) if is_partly => "partly prescribed timing, offset free",
+        Some(AngleOffset::Fixed) if is_partly => "partly prescribed timing, from the x axis",
+        Some(AngleOffset::Ground) if is_partly => "partly prescribed timing, from the line A-B",
         Some(AngleOffset::Free) => "prescribed timing, offset free",
         Some(AngleOffset::Fixed) => "prescribed timing, from the x axis",
         Some(AngleOffset::Ground) => "prescribed timing, from the line A-B",

@@ -15,7 +15,7 @@ pub(super) fn search(context: Context<'_>, Allowance { limit, patience }: Allowa
     // Each with its part of the patience that is left.
     let task = context.problem.task();
     let searches: &[(Search, f64)] = match task.timing() {
-        Timing::Prescribed { .. } if task.is_function() => &[(rounds::search, 1.0)],
+        Timing::Prescribed { .. } if task.is_function() || task.is_partly_timed() => &[(rounds::search, 1.0)],
         Timing::Prescribed { .. } => &[(variable_projection::search, REDUCED_SHARE), (rounds::search, 1.0)],
         Timing::Free if task.body().is_some() => &[(motion::search, 1.0)],
         Timing::Free => &[(free::search, 1.0)],

@@ -187,7 +187,8 @@ pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     let weight: f64 = task.weights().iter().sum();
     let scale = weight * task.error_size().powi(2);
     let held = &mut start.positions;
-    if !held.is_empty() && !PathFit::new(problem, start.setting).settle(&start.design, held) {
+    let settles = !held.is_empty() && !task.is_partly_timed();
+    if settles && !PathFit::new(problem, start.setting).settle(&start.design, held) {
         return None;
     }
     let (cost, lack) = on_fit(problem, start, false, Screening { positions: &start.positions })??;
@@ -331,8 +332,13 @@ fn judged_with(problem: &Problem, end: &Start, to_curve: Option<CurveErrorRecord
         };
         let written = problem.spec().task.timing.as_ref()?;
         debug_assert_eq!(written.crank_deg.len(), crank_angles.len());
-        let crank_deg: Vec<f64> =
+        let mut crank_deg: Vec<f64> =
             written.crank_deg.iter().map(|deg| base + problem.run(end.setting.direction) * deg).collect();
+        for (j, ([e, _], deg)) in end.positions.iter().zip(&mut crank_deg).enumerate() {
+            if task.is_untimed(j) {
+                *deg += wrapped(e.arg() - deg.to_radians()).to_degrees();
+            }
+        }
         let assemblies = vec![end.setting.assembly; crank_deg.len()];
         let frame = frame_of(problem, &linkage, &crank_deg, end.setting.direction);
         return assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), frame, to_curve);

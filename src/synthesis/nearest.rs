@@ -8,6 +8,7 @@ use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, InputRange};
 use crate::task::forms::design_space::Shape;
 use crate::task::forms::rows::assembly_of;
+use crate::task::forms::timed::TimedPathFit;
 use crate::task::forms::torus::Positions;
 use crate::task::{AngleOffset, Problem, Setting, Timing};
 use std::f64::consts::TAU;
@@ -22,8 +23,47 @@ pub fn nearest_positions(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f6
     match problem.task().timing() {
         Timing::Free if problem.task().body().is_some() => of_body(problem, linkage),
         Timing::Free => free(problem, linkage),
+        Timing::Prescribed { .. } if problem.task().is_partly_timed() => partly_timed(problem, linkage),
         Timing::Prescribed { offset, .. } => prescribed(problem, linkage, *offset),
     }
+}
+
+/// As [`prescribed`] of the timed targets, with the others where the coupler point is nearest between their neighbours.
+fn partly_timed(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+    let task = problem.task();
+    let mut spec = problem.spec().clone();
+    let timed: Vec<usize> = (0..task.len()).filter(|j| !task.is_untimed(*j)).collect();
+    let of = |list: &[f64]| timed.iter().map(|j| list[*j]).collect::<Vec<f64>>();
+    spec.task.points = timed.iter().map(|j| spec.task.points[*j]).collect();
+    spec.task.raw = None;
+    for list in [&mut spec.task.weight, &mut spec.task.tolerance].into_iter().flatten() {
+        *list = of(list);
+    }
+    if let Some(body) = &mut spec.task.body {
+        body.angle_deg = timed.iter().map(|j| body.angle_deg[*j]).collect();
+        body.tolerance_deg = body.tolerance_deg.as_ref().map(|list| of(list));
+    }
+    if let Some(timing) = &mut spec.task.timing {
+        (timing.crank_deg, timing.free) = (of(&timing.crank_deg), Vec::new());
+    }
+    let whole = Problem::new(spec).ok()?;
+    let Timing::Prescribed { offset, .. } = whole.task().timing() else { return None };
+    let (crank_deg, _) = prescribed(&whole, linkage, *offset)?;
+    let written = &problem.spec().task.timing.as_ref()?.crank_deg;
+    let steps = (crank_deg[crank_deg.len() - 1] - crank_deg[0])
+        * (written[*timed.last()?] - written[*timed.first()?]);
+    let direction = if steps < 0.0 { -1.0 } else { 1.0 };
+    let base = (crank_deg[0] - direction * written[timed[0]]).to_radians();
+    let side = linkage.side();
+    let setting = Setting { aim: None, assembly: linkage.assembly(), direction, side };
+    let space = problem.space(side);
+    let design = space.coordinates(&Shape::from(linkage), if problem.offset_is_free() { base } else { 0.0 });
+    let positions = TimedPathFit::new(problem, setting)?.attached(&design)?;
+    let all = positions.iter().zip(written).enumerate().map(|(j, ([e, _], deg))| {
+        let guess = base.to_degrees() + direction * deg;
+        if task.is_untimed(j) { guess + wrapped(e.arg() - guess.to_radians()).to_degrees() } else { guess }
+    });
+    Some((all.collect(), vec![linkage.assembly(); task.len()]))
 }
 
 /// Returns a crank angle on each circuit that the linkage's own t1 can be on.

@@ -155,7 +155,8 @@ fn search_here(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
             run.local(LOCAL_SHARE);
             if run.gave_up() {
                 run.relaxed();
-                if !run.found.has_accepted() && problem.task().body().is_none() {
+                let populations_suit = problem.task().body().is_none() && !problem.task().is_partly_timed();
+                if !run.found.has_accepted() && populations_suit {
                     run.feasible()?;
                 }
             }

@@ -132,7 +132,8 @@ fn convex(
     const NONE: (Fitted, f64) = (Fitted::NONE, f64::INFINITY);
     let (problem, mut start) = (context.problem, start.clone());
     let held = &mut start.positions;
-    if !held.is_empty() && !PathFit::new(problem, start.setting).settle(&start.design, held) {
+    let settles = !held.is_empty() && !problem.task().is_partly_timed();
+    if settles && !PathFit::new(problem, start.setting).settle(&start.design, held) {
         return NONE;
     }
     let polishing = Polishing { context, start: &start, goal, good_enough, evaluations };

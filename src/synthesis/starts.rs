@@ -15,6 +15,7 @@ use crate::numbers::optimise::population::PopulationProblem;
 use crate::task::forms::design_space::{DesignSpace, Shape};
 use crate::task::forms::linear_fit::{KnownPivots, Ratios, assembly_sign, coupler_direction, fit};
 use crate::task::forms::start::Start;
+use crate::task::forms::timed::{TimedMotionFit, TimedPathFit};
 use crate::task::forms::torus::Positions;
 use crate::task::{AngleOffset, Problem, Setting, Timing};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -139,7 +140,12 @@ impl<'a> Starts<'a> {
                 let shape = self.fit(&ratios, &known, &positions?)?;
                 let ground = (shape.follower_pivot - shape.crank_pivot).arg();
                 let offset = if self.problem.offset_is_free() { phase + ground } else { 0.0 };
-                Some(Start { design: space.design(&shape, offset), setting, positions: Vec::new() })
+                let design = space.design(&shape, offset);
+                let positions = match self.problem.task().body() {
+                    None => TimedPathFit::new(self.problem, setting)?.attached(&design)?,
+                    Some(_) => TimedMotionFit::new(self.problem, setting)?.attached(&design)?,
+                };
+                Some(Start { design, setting, positions })
             }
             Timing::Free => {
                 let along = on_ellipse.unwrap_or(&self.arc);
@@ -158,7 +164,15 @@ impl<'a> Starts<'a> {
         positions: &[[Complex; 2]],
     ) -> Option<Shape> {
         let task = self.problem.task();
-        fit(ratios, known, positions, task.points(), task.weights())
+        if !task.is_partly_timed() {
+            return fit(ratios, known, positions, task.points(), task.weights());
+        }
+        // Of those with their own crank angle nothing is known yet.
+        let timed: Vec<usize> = (0..task.len()).filter(|j| !task.is_untimed(*j)).collect();
+        let positions: Vec<[Complex; 2]> = timed.iter().map(|j| positions[*j]).collect();
+        let points: Vec<Complex> = timed.iter().map(|j| task.points()[*j]).collect();
+        let weights: Vec<f64> = timed.iter().map(|j| task.weights()[*j]).collect();
+        fit(ratios, known, &positions, &points, &weights)
     }
 
     /// Draws positions (from the ground line) spread along the circuit as the points are `along` the target, in parts of

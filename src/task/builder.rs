@@ -68,7 +68,7 @@ impl ProblemBuilder {
     /// Prescribes the timing: the crank angle at each point, degrees, counter-clockwise positive, measured from `offset`.
     #[must_use]
     pub fn timing(mut self, crank_deg: Vec<f64>, offset: AngleOffset) -> Self {
-        self.spec.task.timing = Some(TimingSpec { crank_deg, offset });
+        self.spec.task.timing = Some(TimingSpec { crank_deg, offset, free: Vec::new() });
         self
     }
 

@@ -205,6 +205,8 @@ pub struct Task {
     closed: bool,
     comes_back: Return,
     timing: Timing,
+    /// Whether the crank angle of each target is free although others are prescribed; empty: of none.
+    untimed: Vec<bool>,
     body: Option<Body>,
     size: f64,
     error_size: f64,
@@ -235,6 +237,12 @@ pub enum TaskError {
     /// The length that an angle error of one radian counts like is not a positive number.
     #[error("angle_weight = {0}: it must be a length above 0")]
     AngleWeight(f64),
+    /// A target is named as free that is not there, or beside which none has a crank angle.
+    #[error("target {0} has no crank angle that could be free")]
+    NotTimed(usize),
+    /// Fewer than two targets have a crank angle.
+    #[error("crank angles are prescribed at fewer than two targets")]
+    TooFewTimed,
     /// All outputs of a function are equal.
     #[error("all outputs are equal: the follower would stand still")]
     ConstantOutput,
@@ -287,6 +295,8 @@ pub struct TaskOptions {
     pub tolerances: Option<Vec<f64>>,
     /// Whether the target is a closed curve: the last point is followed by the first.
     pub closed: bool,
+    /// The targets with prescribed timing whose crank angle is free after all.
+    pub untimed: Vec<usize>,
     /// The angles of a body, in a motion.
     pub body: Option<Body>,
 }
@@ -322,7 +332,8 @@ fn check_body(body: &Body, n: usize) -> Result<(), TaskError> {
 impl Task {
     /// Creates a list of targets at `points` with the given timing.
     ///
-    /// A last point equal to the first is kept. Adjacent equal points are refused unless their prescribed
+    /// A last point equal to the first is kept.     /// Adjacent equal points are refused unless the timing is prescribed (the point dwells there) or the body lies there at
+    /// different angles.
     /// crank angles are equal modulo a turn, or the body lies there at different angles.
     ///
     /// # Errors
@@ -347,6 +358,16 @@ impl Task {
             if let Some(index) = crank_angles.iter().position(|v| !usable(*v)) {
                 return Err(TaskError::NotFinite { index, value: crank_angles[index] });
             }
+        }
+        let mut untimed = vec![false; if options.untimed.is_empty() { 0 } else { n }];
+        for &j in &options.untimed {
+            match untimed.get_mut(j) {
+                Some(is_free) if matches!(timing, Timing::Prescribed { .. }) => *is_free = true,
+                _ => return Err(TaskError::NotTimed(j)),
+            }
+        }
+        if !untimed.is_empty() && untimed.iter().filter(|is_free| !**is_free).count() < 2 {
+            return Err(TaskError::TooFewTimed);
         }
         let positive: fn(f64) -> bool = |value| value > 0.0;
         let lists = [
@@ -373,13 +394,8 @@ impl Task {
             size = options.body.as_ref().map(|body| body.angle_weight).ok_or(TaskError::NoExtent)?;
         }
         for i in 0..n - 1 {
-            let timed_equal = match &timing {
-                Timing::Free => false,
-                Timing::Prescribed { crank_angles, .. } => {
-                    let turns = (crank_angles[i + 1] - crank_angles[i]) / std::f64::consts::TAU;
-                    (turns - turns.round()).abs() <= 1e-9
-                }
-            };
+            // At two crank angles the point is to dwell.
+            let timed_equal = matches!(timing, Timing::Prescribed { .. });
             let turned = options.body.as_ref().is_some_and(|body| body.angles[i] != body.angles[i + 1]);
             if points[i] == points[i + 1] && !timed_equal && !turned {
                 return Err(TaskError::AdjacentEqual(i));
@@ -392,6 +408,7 @@ impl Task {
             closed: options.closed,
             comes_back: Return::default(),
             timing,
+            untimed,
             body: options.body,
             size,
             error_size: size,
@@ -416,6 +433,7 @@ impl Task {
             closed: false,
             comes_back: Return::default(),
             timing,
+            untimed: Vec::new(),
             size: 1.0,
             error_size: body.angle_weight * range,
             body: Some(body),
@@ -514,6 +532,16 @@ impl Task {
     /// Returns the timing.
     pub fn timing(&self) -> &Timing {
         &self.timing
+    }
+
+    /// Returns whether some crank angles are prescribed and others free.
+    pub fn is_partly_timed(&self) -> bool {
+        !self.untimed.is_empty()
+    }
+
+    /// Returns whether the crank angle of a target is free although others are prescribed.
+    pub fn is_untimed(&self, j: usize) -> bool {
+        self.untimed.get(j).copied().unwrap_or(false)
     }
 
     /// Returns the diagonal of the target's bounding box; of a body that only turns, the length that an angle error of one

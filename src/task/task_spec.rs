@@ -101,6 +101,34 @@ pub struct TimingSpec {
     pub crank_deg: Vec<f64>,
     /// Their reference direction.
     pub offset: AngleOffset,
+    /// The targets whose crank angle is free after all, counted from 0, in their order: what `crank_deg` says of them lies
+    /// between their neighbours and is a guess.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub free: Vec<usize>,
+}
+
+impl TimingSpec {
+    /// Returns the timing of crank angles (degrees), some of them free: each of these gets a guess, evenly between its
+    /// neighbours; before the first and behind the last given one on the way that closes the turn. `None` if none is given.
+    pub fn partly(angles: &[Option<f64>], offset: AngleOffset) -> Option<TimingSpec> {
+        let n = angles.len();
+        let given: Vec<(usize, f64)> =
+            angles.iter().enumerate().filter_map(|(j, a)| Some((j, (*a)?))).collect();
+        let ((first, from), (last, to)) = (*given.first()?, *given.last()?);
+        // One more turn lies between the last and the first again.
+        let turn = if to < from { -360.0 } else { 360.0 };
+        let before = |j: usize| given.iter().rev().find(|(k, _)| *k < j).copied();
+        let behind = |j: usize| given.iter().find(|(k, _)| *k > j).copied();
+        let guess = |j: usize| {
+            let (low, a) = before(j).map_or((last as f64 - n as f64, to - turn), |(k, a)| (k as f64, a));
+            let (high, b) = behind(j).map_or((first as f64 + n as f64, from + turn), |(k, b)| (k as f64, b));
+            a + (b - a) * (j as f64 - low) / (high - low)
+        };
+        let crank_deg =
+            angles.iter().enumerate().map(|(j, angle)| angle.unwrap_or_else(|| guess(j))).collect();
+        let free = (0..n).filter(|j| angles[*j].is_none()).collect();
+        Some(TimingSpec { crank_deg, offset, free })
+    }
 }
 
 impl TaskSpec {
@@ -126,6 +154,7 @@ impl TaskSpec {
             weights: self.weight.clone(),
             tolerances: self.tolerance.clone(),
             closed: self.closed,
+            untimed: self.timing.as_ref().map_or_else(Vec::new, |timing| timing.free.clone()),
             body: self.body.as_ref().map(|body| Body {
                 angles: body.angle_deg.iter().map(|angle| angle.as_ref().map(radians)).collect(),
                 angle_weight: body.angle_weight,
@@ -287,7 +316,7 @@ impl FunctionTable {
         let angle_deg = output_deg.into_iter().map(Some).collect();
         TaskSpec {
             weight,
-            timing: Some(TimingSpec { crank_deg: input_deg, offset: input_offset }),
+            timing: Some(TimingSpec { crank_deg: input_deg, offset: input_offset, free: Vec::new() }),
             body: Some(BodySpec { angle_deg, angle_weight: DEGREES, tolerance_deg }),
             output: Some(OutputSpec { offset: output_offset, sense, of }),
             ..TaskSpec::default()

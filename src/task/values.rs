@@ -207,6 +207,42 @@ impl JsonSchema for PoseNumbers {
     }
 }
 
+/// A crank angle in degrees, or the word `free`: `None`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CrankAngle(pub Option<f64>);
+
+impl<'de> Deserialize<'de> for CrankAngle {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct AngleVisitor;
+        impl<'de> Visitor<'de> for AngleVisitor {
+            type Value = CrankAngle;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an angle in degrees, or \"free\"")
+            }
+            visit_numbers!(|angle| CrankAngle(Some(angle)));
+            fn visit_str<E: de::Error>(self, word: &str) -> Result<CrankAngle, E> {
+                if word == "free" {
+                    return Ok(CrankAngle(None));
+                }
+                Err(E::invalid_value(de::Unexpected::Str(word), &self))
+            }
+        }
+        deserializer.deserialize_any(AngleVisitor)
+    }
+}
+
+impl JsonSchema for CrankAngle {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "CrankAngle".into()
+    }
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({"anyOf": [{"type": "number"}, {"const": "free"}]})
+    }
+}
+
 /// A rectangle, given by four numbers.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
 #[schemars(inline)]

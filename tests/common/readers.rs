@@ -134,15 +134,21 @@ pub fn linkage(bytes: &[u8]) {
     }
 }
 
-/// Points CSV.
+/// Points CSV, and CSV of a function's pairs.
 pub fn points(bytes: &[u8]) {
     let Some(text) = text(bytes) else { return };
-    match points_file::parse("points.csv", text) {
+    of_csv(points_file::parse("points.csv", text));
+    of_csv(points_file::parse_pairs("pairs.csv", text));
+}
+
+fn of_csv(read: Result<points_file::PointsFile, Box<Diagnostic>>) {
+    match read {
         Ok(file) => {
             file.warnings.iter().for_each(shown);
             let n = file.points.len();
             assert!(n > 0 && n <= points_file::MAX_POINTS && file.rows.len() == n);
-            for column in [&file.crank_deg, &file.weight, &file.tolerance].into_iter().flatten() {
+            let columns = [&file.weight, &file.tolerance, &file.tolerance_deg];
+            for column in columns.into_iter().flatten() {
                 assert!(column.len() == n && column.iter().all(|v| v.is_finite()));
             }
             assert!(file.points.iter().flatten().all(|v| v.abs() <= 1e12));
@@ -176,8 +182,8 @@ pub fn record(bytes: &[u8]) {
     reports(&record);
 }
 
-/// Small searches of every kind: free timing, prescribed timing, in the physical parameters, populations.
-pub const SEARCHES: [&str; 4] = [
+/// Small searches of every kind: free timing, prescribed timing, in the physical parameters, populations, a function.
+pub const SEARCHES: [&str; 5] = [
     "format = 1\nname = \"free\"\n[task.path]\npoints = [[0, 0], [2, 1], [3, 3], [4, 1], [5, 0], [6, -2], [4, -3], [2, -1]]\n\
      [solve]\ncandidates = 4\nevaluations = 20000\nmethod = \"least-squares\"\n",
     "format = 1\nname = \"timed\"\n[task.path]\npoints = [[0, 0], [10, 0], [10, 10], [0, 10], [5, 5]]\n\
@@ -190,6 +196,8 @@ pub const SEARCHES: [&str; 4] = [
     "format = 1\nname = \"differential\"\n[task.path]\npoints = [[0, 0], [2, 1], [4, 1], [5, 0]]\n\
      [solve]\nevaluations = 2000\nmethod = \"differential-evolution\"\n[solve.differential-evolution]\n\
      population = 8\nstall_generations = 4\n",
+    "format = 1\nname = \"function\"\n[task.function]\ninput_deg = [0, 20, 40, 60, 80]\noutput_deg = [0, 3, 11, 24, 40]\n\
+     [require]\ntransmission_deg_min = 30\n[solve]\ncandidates = 2\nevaluations = 6000\n",
 ];
 
 /// The job of one of [`SEARCHES`].

@@ -3,6 +3,7 @@
 
 use crate::common::parse;
 use crate::motion::{ALONE, assert_mostly_small, solved, wrapped};
+use linkwright::internals::judge::practicality::sensitivity::{At, Crank, output_sensitivity};
 use linkwright::internals::judge::rank::is_exact;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
@@ -319,4 +320,47 @@ fn tolerances_of_outputs_are_kept_one_by_one() {
     assert_true(&beyond);
     let nearest = &beyond.candidates[0];
     assert!(!nearest.accepted && (nearest.error.max - 0.190_129_9).abs() < 1e-6, "{}", nearest.error.max);
+}
+
+#[test]
+fn a_wrong_dimension_changes_the_output_as_its_derivative_says() {
+    let draws = &mut stream(94, 0);
+    for _ in 0..20 {
+        let of = generated(draws, 11);
+        let linkage = of.linkage.with_assembly(of.linkage.assembly());
+        let t1 = linkage.assembly().sign();
+        let at: Vec<At> =
+            of.crank.iter().map(|angle| At { crank_angle: *angle, assembly: linkage.assembly() }).collect();
+        let felt = output_sensitivity(&linkage, &at, Crank::OffsetIsSet, true).expect("it has derivatives");
+        let outputs = |linkage: &FourBar, turn: f64| -> Vec<f64> {
+            let ground = linkage.ground_angle();
+            let turned = |angle: &f64| {
+                let psi = follower_angle(linkage, angle + turn + ground, t1).expect("it closes");
+                wrapped(psi - ground).to_degrees()
+            };
+            of.crank.iter().map(turned).collect()
+        };
+        let step = 1e-6;
+        for (k, name) in ["a", "b", "c"].into_iter().enumerate() {
+            let mut lengths = [linkage.crank(), linkage.coupler(), linkage.follower()];
+            lengths[k] += step;
+            let other = four_bar(lengths[0], lengths[1], lengths[2], t1 as i32).expect("a linkage");
+            let change = |turn: f64| -> Vec<f64> {
+                let (one, two) = (outputs(&linkage, 0.0), outputs(&other, turn));
+                let apart: Vec<f64> =
+                    one.iter().zip(&two).map(|(a, b)| wrapped((b - a).to_radians()).to_degrees()).collect();
+                let mean = apart.iter().sum::<f64>() / apart.len() as f64;
+                apart.iter().map(|a| a - mean).collect()
+            };
+            // The crank's offset that changes the outputs least, by a line through two of them.
+            let (still, turned) = (change(0.0), change(step));
+            let by: Vec<f64> = still.iter().zip(&turned).map(|(a, b)| (b - a) / step).collect();
+            let along = still.iter().zip(&by).map(|(s, b)| s * b).sum::<f64>()
+                / by.iter().map(|b| b * b).sum::<f64>();
+            let left = still.iter().zip(&by).map(|(s, b)| (s - along * b) / step);
+            let rms = (left.map(|x| x * x).sum::<f64>() / still.len() as f64).sqrt();
+            let felt = felt.dimensions.iter().find(|d| d.name == name).expect("it is one of nine").rms;
+            assert!((felt - rms).abs() < 2e-3 * (1.0 + rms), "{name}: {felt} {rms}");
+        }
+    }
 }

@@ -43,6 +43,7 @@ fn subject(linkage: FourBar, unit: Option<Unit>) -> Subject {
         closed: true,
         positions: vec![(0.4, AssemblyMode::Plus)],
         frame_deg: None,
+        carried: None,
         body_deg: Vec::new(),
     }
 }

@@ -6,6 +6,7 @@ use crate::files::problem_file::ProblemFile;
 use crate::files::svg_file::{self, SvgOptions};
 use crate::files::{name, points_file, problem_file};
 use crate::report::html::{Held, held};
+use crate::task::AngleOffset;
 use crate::task::spec::TimingSpec;
 
 /// Reads a text as the file that it would be. No other file is opened.
@@ -18,7 +19,7 @@ pub fn read(text: &Text) -> Result<Reading, AskError> {
     let (ask, whole, warnings) = match text.kind {
         Kind::Csv => {
             let csv = points_file::parse(file, &text.text).map_err(AskError::Text)?;
-            let timing = csv.crank_deg.map(|crank_deg| TimingSpec { crank_deg, offset: Default::default() });
+            let timing = csv.crank_deg.and_then(|angles| TimingSpec::partly(&angles, AngleOffset::default()));
             let tolerances = csv.tolerance;
             let ask = Ask { points: csv.points, weights: csv.weight, tolerances, timing, ..blank() };
             (ask, false, csv.warnings)

@@ -30,7 +30,7 @@ pub(super) fn of(
     let warning = if asked && path.body.is_some() {
         let help = "remove the key; how often the best answer came back is recorded all the same";
         Some(toml.at("solve.certify", "no certificate is available for poses of a body").with_help(help))
-    } else if asked && path.timing.is_none() {
+    } else if asked && path.timing.as_ref().is_none_or(|timing| !timing.free.is_empty()) {
         let help = "give the points crank angles (task.path.timing), or remove the key; how often the best answer \
                     came back is recorded all the same";
         Some(toml.at("solve.certify", "no certificate is available for free timing").with_help(help))

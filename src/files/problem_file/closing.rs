@@ -15,7 +15,8 @@ pub(super) fn against(toml: &TomlText<'_>, spec: &ProblemSpec) -> Option<Diagnos
     if path.closed
         && require.order == OrderPolicy::Required
         && require.closing.is_one_way()
-        && let Some(angles) = path.timing.as_ref().map(|timing| &timing.crank_deg)
+        && let Some(angles) =
+            path.timing.as_ref().filter(|timing| timing.free.is_empty()).map(|timing| &timing.crank_deg)
         && let Some(turn) = reversal(angles)
     {
         let message =

@@ -40,7 +40,13 @@ pub(super) fn function_of(
         if let Some(angle) = pair.iter().find(|angle| angle.abs() > MOST_DEG) {
             let message = format!("pair {}: {angle} degrees is more than a hundred turns", j + 1);
             let help = "write the angles in degrees, as far as crank and follower turn";
-            return Err(Box::new(target.at_point(toml, j, message).with_help(help)));
+            let is_input = pair[0].abs() > MOST_DEG && function.input_deg.is_some();
+            let at = if is_input {
+                toml.at(&format!("task.function.input_deg.{j}"), message)
+            } else {
+                target.at_point(toml, j, message)
+            };
+            return Err(Box::new(at.with_help(help)));
         }
     }
     let mut columns = [None, None];
@@ -60,7 +66,7 @@ pub(super) fn function_of(
         function.of.clone().zip(function.over).map(|(formula, over)| FormulaSpec { formula, over: over.0 });
     let spec = TaskSpec {
         weight,
-        timing: Some(TimingSpec { crank_deg, offset: function.input_offset }),
+        timing: Some(TimingSpec { crank_deg, offset: function.input_offset, free: Vec::new() }),
         body: Some(BodySpec { angle_deg, angle_weight: DEGREES, tolerance_deg }),
         output: Some(OutputSpec { offset: function.output_offset, sense: function.sense, of }),
         ..TaskSpec::default()
@@ -107,9 +113,7 @@ pub(super) fn of_formula(toml: &TomlText<'_>, function: &RawFunction) -> Checked
     }
     let read = match exmex::parse::<f64>(formula) {
         Ok(read) => read,
-        Err(error) => {
-            return refuse("of", format!("{} cannot be read: {}", quoted(formula), error.msg()), help);
-        }
+        Err(_) => return refuse("of", format!("{} cannot be read as a formula", quoted(formula)), help),
     };
     if let Some(other) = read.var_names().iter().find(|name| *name != "x") {
         let message = format!("{} has the unknown name {}", quoted(formula), quoted(other));
@@ -129,7 +133,9 @@ pub(super) fn of_formula(toml: &TomlText<'_>, function: &RawFunction) -> Checked
                 let message = format!("{} is {y} at x = {x}", quoted(formula));
                 return refuse("of", message, "choose a range (over) in which the formula has finite values");
             }
-            Err(error) => return refuse("of", format!("{}: {}", quoted(formula), error.msg()), help),
+            Err(_) => {
+                return refuse("of", format!("{} has no value at x = {x}", quoted(formula)), help);
+            }
         }
     }
     let (low, high) =

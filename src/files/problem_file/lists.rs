@@ -5,7 +5,7 @@ use super::raw::RawTiming;
 use super::target::Target;
 use crate::files::diagnostic::{Checked, counted};
 use crate::files::toml_text::TomlText;
-use crate::files::toml_values::{OneOrEach, OnlyTable, numbers};
+use crate::files::toml_values::{OneOrEach, OnlyTable};
 use crate::task::AngleOffset;
 use crate::task::spec::TimingSpec;
 
@@ -24,13 +24,13 @@ impl Lists<'_> {
     }
 
     /// Returns a list that is given in the problem file or as a column of the points file; `what` names one of its values.
-    pub fn list(
+    pub fn list<T>(
         &self,
         key: &str,
         what: &str,
-        here: Option<Vec<f64>>,
-        column: Option<Vec<f64>>,
-    ) -> Checked<Option<Vec<f64>>> {
+        here: Option<Vec<T>>,
+        column: Option<Vec<T>>,
+    ) -> Checked<Option<Vec<T>>> {
         let n = self.target.points.len();
         let place = self.key(key);
         match (here, column) {
@@ -83,10 +83,13 @@ impl Lists<'_> {
     pub fn timing(
         &self,
         table: Option<&OnlyTable<RawTiming>>,
-        column: Option<Vec<f64>>,
+        column: Option<Vec<Option<f64>>>,
     ) -> Checked<Option<TimingSpec>> {
         let (here, offset) = match table {
-            Some(OnlyTable(timing)) => (timing.crank_deg.as_deref().map(numbers), timing.offset),
+            Some(OnlyTable(timing)) => {
+                let angles = timing.crank_deg.as_ref().map(|list| list.iter().map(|angle| angle.0).collect());
+                (angles, timing.offset)
+            }
             None => (None, AngleOffset::default()),
         };
         let crank_deg = self.list("timing.crank_deg", "crank angle", here, column)?;
@@ -97,6 +100,14 @@ impl Lists<'_> {
             );
             return self.toml.refuse_key(&self.key("timing"), "the crank angles are missing", help);
         }
-        Ok(crank_deg.map(|crank_deg| TimingSpec { crank_deg, offset }))
+        let Some(angles) = crank_deg else { return Ok(None) };
+        let given = angles.iter().flatten().count();
+        if given < 2 {
+            let message =
+                format!("{} of {} have a crank angle", given, counted(angles.len(), self.target.one));
+            let help = "give two of them crank angles at least; without any, leave out the timing";
+            return self.toml.refuse_key(&self.key("timing.crank_deg"), message, help);
+        }
+        Ok(TimingSpec::partly(&angles, offset))
     }
 }

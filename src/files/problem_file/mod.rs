@@ -374,9 +374,25 @@ fn pins_of(toml: &TomlText<'_>, task: &TaskSpec, require: &RequireSpec) -> Check
 /// Checks that a method searches for poses, in a motion.
 fn method_of(toml: &TomlText<'_>, task: &TaskSpec, method: Method) -> Checked<()> {
     match method {
+        Method::Genetic | Method::DifferentialEvolution
+            if task.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) =>
+        {
+            toml.refuse(
+                "solve.method",
+                format!(
+                    "method = \"{}\" does not support free crank angles among prescribed ones",
+                    method.name()
+                ),
+                "write method = \"auto\" or \"least-squares\", or give every target a crank angle",
+            )
+        }
         Method::Genetic | Method::DifferentialEvolution if task.body.is_some() => toml.refuse(
             "solve.method",
-            format!("method = \"{}\" is not supported for {}s yet", method.name(), task.noun()),
+            format!(
+                "method = \"{}\" is not supported for {} yet",
+                method.name(),
+                if task.is_function() { "functions" } else { "poses" }
+            ),
             "write method = \"auto\" or \"least-squares\"; they need fewer evaluations",
         ),
         _ => Ok(()),

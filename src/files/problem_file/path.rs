@@ -144,6 +144,9 @@ fn explain_task(toml: &TomlText<'_>, target: &Target, spec: &TaskSpec, error: &T
             target.at_point(toml, *index, error.to_string())
         }
         TaskError::LengthMismatch { .. } => target.at_all(toml, error.to_string()),
+        TaskError::NotTimed(_) | TaskError::TooFewTimed => target
+            .at_all(toml, error.to_string())
+            .with_help("give at least two targets a crank angle, or leave out the timing"),
         TaskError::ConstantInput | TaskError::ConstantOutput | TaskError::NoInput => target
             .at_all(toml, error.to_string())
             .with_help("give at least two pairs whose inputs and outputs differ"),

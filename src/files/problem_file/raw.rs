@@ -2,7 +2,9 @@
 //! these types.
 
 use super::Expect;
-use crate::files::toml_values::{BoundedXY, Bounds, Count, Number, OneOrEach, OnlyTable, PoseNumbers, XY};
+use crate::files::toml_values::{
+    BoundedXY, Bounds, Count, CrankAngle, Number, OneOrEach, OnlyTable, PoseNumbers, XY,
+};
 use crate::mechanism::Unit;
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
@@ -117,6 +119,8 @@ pub(crate) struct RawMotion {
     pub tolerance: Option<OneOrEach>,
     /// The largest error of the angle accepted, degrees, likewise.
     pub tolerance_deg: Option<OneOrEach>,
+    /// The poses that are to be met exactly, counted from 0; where silent, none: all are approached alike.
+    pub exact: Option<Vec<Count>>,
     /// Weights of the squared errors, above 0, one a pose; where silent, all poses count alike.
     pub weight: Option<Vec<Number>>,
     /// Prescribed crank angles; where silent, the timing is free: each pose is met at whatever angle suits it.
@@ -155,8 +159,9 @@ pub(crate) struct RawPath {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Timing")]
 pub(crate) struct RawTiming {
-    /// One a target, degrees, counter-clockwise positive; or a column of the CSV file.
-    pub crank_deg: Option<Vec<Number>>,
+    /// One a target, degrees, counter-clockwise positive, or "free" where any angle between its neighbours will do; or a
+    /// column of the CSV file, whose empty cells are free.
+    pub crank_deg: Option<Vec<CrankAngle>>,
     /// Their reference direction.
     #[serde(default)]
     pub offset: AngleOffset,

@@ -96,7 +96,8 @@ impl Subject {
         if path.body.is_some() {
             return Err(NoCertificate::Motion);
         }
-        let timing = path.timing.as_ref().ok_or(NoCertificate::FreeTiming)?;
+        let timing = path.timing.as_ref().filter(|timing| timing.free.is_empty());
+        let timing = timing.ok_or(NoCertificate::FreeTiming)?;
         let problem =
             crate::task::Problem::new(spec.clone()).map_err(|e| NoCertificate::Problem(e.to_string()))?;
         let task = problem.task();

@@ -12,6 +12,9 @@
 //! point pass earlier or later, and the shift of the path is the part across it. (If the path misses the target by
 //! T - P, that vector is perpendicular to the path, and the distance from the target changes by the same part.)
 //!
+//! Of a function it is not the path that counts but the output: s_jk is then the change of the follower's angle from the
+//! ground line, in degrees, for a unit error of dimension k; where the offset of outputs is free, its mean is set to zero anew.
+//!
 //! The dimensions are the nine of [`crate::mechanism::NaturalCoordinates`], each moved alone. If P lies nearly on the
 //! line C-D, d and e hardly determine its position (coupler_y is the root of a small difference): then the coupler is
 //! measured by `coupler_x` and `coupler_y`, P along and across C -> D. `ground` moves B along A -> B; it is reported
@@ -19,7 +22,7 @@
 
 use super::sweep::Sweep;
 use crate::mechanism::effort::POINTS_AT_ONCE;
-use crate::mechanism::four_bar::gradient::shape_gradient;
+use crate::mechanism::four_bar::gradient::{follower_gradient, shape_gradient};
 use crate::mechanism::{AssemblyMode, Complex, FourBar, dot, length, turned};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -120,16 +123,53 @@ fn columns(linkage: &FourBar, at: &At, flat: bool) -> Option<([Complex; 9], Comp
     Some((gradient.shape, gradient.crank_angle))
 }
 
+/// Computes the derivatives of the follower's angle from the ground line, degrees, as real parts; `None` at a toggle or if
+/// the loop is open.
+fn output_columns(linkage: &FourBar, at: &At) -> Option<([Complex; 9], Complex)> {
+    let frame = linkage.frame(at.crank_angle, at.assembly)?;
+    let (mut by_shape, by_crank) = follower_gradient(&frame, linkage.crank(), linkage.follower())?;
+    // d(angle of A -> B) = <i ground, dB - dA> / g
+    let across = turned(Complex::from_polar(1.0, linkage.ground_angle())) / linkage.ground();
+    let by_ground = [-across.re, -across.im, across.re, across.im];
+    by_shape.iter_mut().zip(by_ground).for_each(|(by, ground)| *by -= ground);
+    let degrees = |radians: f64| Complex::new(radians.to_degrees(), 0.0);
+    Some((by_shape.map(degrees), degrees(by_crank)))
+}
+
 /// Computes the shifts of the path at the given positions for errors of the dimensions; `None` if none of the positions
 /// has a derivative.
 pub fn sensitivity(linkage: &FourBar, positions: &[At], crank: Crank) -> Option<Sensitivity> {
-    let flat = is_flat(linkage);
+    sensitivity_of(linkage, positions, crank, None)
+}
+
+/// Computes the changes of the follower's angle at the given positions for errors of the dimensions, degrees; `None` if none
+/// of the positions has a derivative. `offset_is_free`: whether outputs count from any angle.
+pub fn output_sensitivity(
+    linkage: &FourBar,
+    positions: &[At],
+    crank: Crank,
+    offset_is_free: bool,
+) -> Option<Sensitivity> {
+    sensitivity_of(linkage, positions, crank, Some(offset_is_free))
+}
+
+/// As [`sensitivity`], or as [`output_sensitivity`] where `output` says whether its offset is free.
+fn sensitivity_of(
+    linkage: &FourBar,
+    positions: &[At],
+    crank: Crank,
+    output: Option<bool>,
+) -> Option<Sensitivity> {
+    let flat = is_flat(linkage) && output.is_none();
     let mut at_toggles = Vec::new();
     let mut places = Vec::new();
     let mut rows: Vec<([Complex; 10], Complex)> = Vec::new();
     let ground = Complex::from_polar(1.0, linkage.ground_angle());
-    let shifts: Vec<_> =
-        positions.par_iter().with_min_len(POINTS_AT_ONCE).map(|at| columns(linkage, at, flat)).collect();
+    let columns = |at: &At| match output {
+        None => columns(linkage, at, flat),
+        Some(_) => output_columns(linkage, at),
+    };
+    let shifts: Vec<_> = positions.par_iter().with_min_len(POINTS_AT_ONCE).map(columns).collect();
     for (j, shift) in shifts.into_iter().enumerate() {
         let Some((nine, mut by_crank)) = shift else {
             at_toggles.push(j);
@@ -150,6 +190,9 @@ pub fn sensitivity(linkage: &FourBar, positions: &[At], crank: Crank) -> Option<
         }
         places.push(j);
         rows.push((row, by_crank));
+    }
+    if output == Some(true) {
+        without_mean(&mut rows);
     }
     settle(&mut rows, crank);
     let of =
@@ -174,6 +217,18 @@ pub fn sensitivity(linkage: &FourBar, positions: &[At], crank: Crank) -> Option<
         at_toggles,
         points: rows.len(),
     })
+}
+
+/// Removes the mean of each column: the part that the offset of outputs compensates.
+fn without_mean(rows: &mut [([Complex; 10], Complex)]) {
+    let n = rows.len().max(1) as f64;
+    let sum = |of: &dyn Fn(&([Complex; 10], Complex)) -> Complex| rows.iter().map(of).sum::<Complex>() / n;
+    let means: [Complex; 10] = std::array::from_fn(|k| sum(&|(row, _)| row[k]));
+    let mean_by_crank = sum(&|(_, by_crank)| *by_crank);
+    for (row, by_crank) in rows.iter_mut() {
+        row.iter_mut().zip(means).for_each(|(shift, mean)| *shift -= mean);
+        *by_crank -= mean_by_crank;
+    }
 }
 
 /// Removes from the shifts the part that the crank compensates.

@@ -3,7 +3,7 @@
 
 use super::clearance::{Build, PivotDistance, pivot_distances};
 use super::layers::{Layering, layering};
-use super::sensitivity::{At, Crank, Sensitivity, along, sensitivity};
+use super::sensitivity::{At, Crank, Sensitivity, along, output_sensitivity, sensitivity};
 use super::sweep::Sweep;
 use crate::judge::referee::judge;
 use crate::mechanism::FourBar;
@@ -50,10 +50,7 @@ impl Practicality {
         let verdict = judge(problem.task(), &candidate.linkage, &radians, &candidate.t1_at);
         let cycle = candidate.transmission_deg.over == TransmissionOver::Cycle;
         let sweep = Sweep::of_motion(&verdict.motion, cycle);
-        // What moves the path says nothing about a function.
-        let felt = (!problem.is_function())
-            .then(|| sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem)))
-            .flatten();
+        let felt = sensitivity_of(problem, candidate);
         let noun = problem.spec().task.noun();
         Some(Practicality { noun, ..Practicality::of(sweep, build, felt, true) })
     }
@@ -77,6 +74,16 @@ impl At {
     pub fn of_candidate(candidate: &Candidate) -> Vec<At> {
         let positions = candidate.crank_deg.iter().zip(&candidate.t1_at);
         positions.map(|(deg, assembly)| At { crank_angle: deg.to_radians(), assembly: *assembly }).collect()
+    }
+}
+
+/// Returns the sensitivity of a candidate: of its path, or in a function of its output; `None` if no position has a
+/// derivative.
+pub fn sensitivity_of(problem: &Problem, candidate: &Candidate) -> Option<Sensitivity> {
+    let (linkage, at, crank) = (&candidate.linkage, At::of_candidate(candidate), crank_of(problem));
+    match problem.task().body().filter(|_| problem.is_function()) {
+        None => sensitivity(linkage, &at, crank),
+        Some(output) => output_sensitivity(linkage, &at, crank, output.given_frame(0.0).is_none()),
     }
 }
 

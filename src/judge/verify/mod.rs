@@ -384,10 +384,14 @@ impl Comparison<'_> {
     fn timing(&mut self, linkage: &FourBar, crank_deg: &[f64]) {
         let Timing::Prescribed { offset, .. } = self.problem.task().timing() else { return };
         let Some(written) = &self.problem.spec().task.timing else { return };
-        let Some((first, written_first)) = crank_deg.first().zip(written.crank_deg.first()) else { return };
+        let task = self.problem.task();
+        let timed = || {
+            let all = crank_deg.iter().zip(&written.crank_deg).enumerate();
+            all.filter_map(|(j, pair)| (!task.is_untimed(j)).then_some(pair))
+        };
+        let Some((first, written_first)) = timed().next() else { return };
         let off = |direction: f64| {
-            let pairs = crank_deg.iter().zip(&written.crank_deg);
-            let off = pairs.map(|(has, wants)| ((has - first) - direction * (wants - written_first)).abs());
+            let off = timed().map(|(has, wants)| ((has - first) - direction * (wants - written_first)).abs());
             off.fold(0.0, f64::max)
         };
         let off_base = |ground: f64| {

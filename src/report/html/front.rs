@@ -130,7 +130,7 @@ fn members(record: &Record, front: &Front) -> Markup {
 
 const NOTES: &str = "transmission: the worst angle, 0 to 90°; large is good. extent: the diagonal of the box of all joints \
     and P over the motion used. longest length: of ground, a, b, c, d and e. link ratio: longest to shortest link. \
-    sensitivity: how far the path moves (rms) for independent errors of all dimensions, per unit of their standard deviation. \
+    sensitivity: how far the path moves (rms; of a function: how much the output changes, in degrees) for independent errors of all dimensions, per unit of their standard deviation. \
     linkage-1.toml is the first of these linkages, and RESULT:front-1 names it in other commands.";
 
 fn drawings(record: &Record, front: &Front) -> Markup {

@@ -36,7 +36,8 @@ pub fn own_frame<const N: usize>(x: &[f64; N]) -> Option<f64> {
 /// `ordered`: whether positions are held in their present order around the curve, if the problem requires an order.
 pub fn on_fit<U: FitUser>(problem: &Problem, start: &Start, ordered: bool, user: U) -> Option<U::Output> {
     let Start { design, setting, positions } = start;
-    match (positions.is_empty(), problem.task().body()) {
+    let is_timed = positions.is_empty() || problem.task().is_partly_timed();
+    match (is_timed, problem.task().body()) {
         (true, None) => Some(user.on(&TimedPathFit::new(problem, *setting)?, *design)),
         (true, Some(_)) if problem.is_function() => {
             let fit = FunctionFit::new(problem, *setting)?;

@@ -8,6 +8,9 @@
 //! (theta_j - arg u_j - beta). The frame beta, the angle from the coupler's direction to the body's x axis, is an unknown
 //! behind those of the design. The row is zero for a target without an angle.
 //!
+//! A target whose crank angle is free although others are prescribed has that angle phi_j as an unknown of its own, with the
+//! tangent -dP/dphi; the fit has positions then, one a target, of which the timed ones are not used.
+//!
 //! A function has the errors of the follower's angle alone, W (s theta_j - arg v_j - beta), in the first of two rows; the
 //! second is zero. Its frame is an unknown too, or the ground line's direction reversed.
 
@@ -18,12 +21,23 @@ use super::torus::{ANGLE_ROW, Positions, angle_residual};
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::gradient::{Frame, coupler_gradient, follower_gradient, shape_gradient};
 use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::four_bar::position::Kernel;
 use crate::mechanism::{Complex, point, turned, xy};
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
 };
 use crate::task::{AngleOffset, Body, Problem, Setting, Timing, best_frame};
 use std::f64::consts::TAU;
+
+/// Samples between two timed targets among which the nearest point to an untimed one is looked for.
+const ATTACHED: usize = 48;
+
+/// Returns the directions of crank and coupler where the crank lies so.
+fn position_at(kernel: &Kernel, crank: Complex) -> [Complex; 2] {
+    let at = kernel.at(crank.re, crank.im);
+    let coupler = point(at.follower_pin) - point(at.crank_pin);
+    [crank, coupler / coupler.norm()]
+}
 
 /// The number of unknowns of a motion: the design and the frame of the body.
 pub const WITH_FRAME: usize = DESIGN + 1;
@@ -138,6 +152,64 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
         let high = self.angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let high = if self.problem.task().closed() { high.max(low + TAU) } else { high };
         Motion::Stretch(low + offset, high + offset, self.setting.assembly)
+    }
+
+    /// As [`TimedFit::motion`], with the crank angles of the targets that have their own.
+    fn motion_of(&self, x: &Design, shape: &Shape, state: &Positions) -> Motion<'static> {
+        let timed = self.motion(x, shape);
+        let Motion::Stretch(mut low, mut high, assembly) = timed else { return timed };
+        for (j, guess) in self.crank_angles(x, shape).into_iter().enumerate() {
+            if let Some(crank) = self.own_crank(j, state) {
+                let angle = guess + wrapped(crank.arg() - guess);
+                (low, high) = (low.min(angle), high.max(angle));
+            }
+        }
+        Motion::Stretch(low, high.min(low + TAU), assembly)
+    }
+
+    /// Returns the direction of the crank at a target that has its own crank angle.
+    fn own_crank(&self, j: usize, state: &Positions) -> Option<Complex> {
+        let [e, _] = state.get(j).filter(|_| self.problem.task().is_untimed(j))?;
+        Some(*e)
+    }
+
+    /// Returns the positions at a design, of partly timed targets: those with their own crank angle are at the point that is
+    /// nearest between their neighbours; none if all targets are timed. `None` if the loop is open at a target.
+    pub fn attached(&self, design: &Design) -> Option<Positions> {
+        let task = self.problem.task();
+        if !task.is_partly_timed() {
+            return Some(Vec::new());
+        }
+        let shape = self.space.shape(design)?;
+        let kernel = shape.kernel(self.setting.assembly);
+        let angles = self.crank_angles(design, &shape);
+        let n = angles.len();
+        // The next timed target in a direction, in steps around the list, and its crank angle on the way there.
+        let turn = if angles[n - 1] < angles[0] { -TAU } else { TAU };
+        let neighbour = |j: usize, step: isize| {
+            (1..=n as isize).find_map(|k| {
+                let place = j as isize + step * k;
+                let at = place.rem_euclid(n as isize) as usize;
+                let turns = place.div_euclid(n as isize) as f64;
+                (!task.is_untimed(at)).then(|| angles[at] + turn * turns)
+            })
+        };
+        let position = |j: usize| {
+            let at = |angle: f64| {
+                let crank = Complex::from_polar(1.0, angle);
+                let there = kernel.at(crank.re, crank.im);
+                (there.gap > 0.0).then(|| (point(there.coupler_point) - task.points()[j]).norm_sqr())
+            };
+            if !task.is_untimed(j) {
+                return at(angles[j]).map(|_| position_at(&kernel, Complex::from_polar(1.0, angles[j])));
+            }
+            let (from, to) = (neighbour(j, -1)?, neighbour(j, 1)?);
+            let samples = (1..ATTACHED).map(|i| from + (to - from) * i as f64 / ATTACHED as f64);
+            let nearest = samples.filter_map(|angle| Some((at(angle)?, angle)));
+            let (_, angle) = nearest.min_by(|one, other| one.0.total_cmp(&other.0))?;
+            Some(position_at(&kernel, Complex::from_polar(1.0, angle)))
+        };
+        (0..n).map(position).collect()
     }
 
     /// Returns the derivative of the ground line's direction by B.
@@ -263,7 +335,7 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
 }
 
 impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N, R> {
-    /// The points have no unknowns of their own: no positions.
+    /// The positions of partly timed targets; none if all are timed.
     type State = Positions;
 
     fn points(&self) -> usize {
@@ -274,7 +346,7 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
         &self.bounds
     }
 
-    fn cost(&self, unknowns: &[f64; N], _: &Positions) -> Option<f64> {
+    fn cost(&self, unknowns: &[f64; N], state: &Positions) -> Option<f64> {
         let x = &design_of(unknowns);
         let shape = self.space.shape(x)?;
         let (task, body) = (self.problem.task(), self.body());
@@ -287,7 +359,7 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
         let mut cost = 0.0;
         let targets = self.phases.iter().zip(task.points()).zip(task.weights());
         for (j, ((phase, target), weight)) in targets.enumerate() {
-            let crank = phase * turn;
+            let crank = self.own_crank(j, state).unwrap_or(phase * turn);
             let at = kernel.at(crank.re, crank.im);
             // At the toggle itself there is no derivative, and beyond it the loop is open.
             if at.gap.is_nan() || at.gap <= 0.0 {
@@ -303,7 +375,12 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
         cost.is_finite().then_some(cost)
     }
 
-    fn linearise(&self, unknowns: &[f64; N], _: &Positions, each: &mut dyn FnMut(&PointBlock<N, R>)) -> bool {
+    fn linearise(
+        &self,
+        unknowns: &[f64; N],
+        state: &Positions,
+        each: &mut dyn FnMut(&PointBlock<N, R>),
+    ) -> bool {
         let x = &design_of(unknowns);
         let Some(shape) = self.space.shape(x) else { return false };
         let (task, body) = (self.problem.task(), self.body());
@@ -316,7 +393,8 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
         let (rule, by_ground_angle) = (self.space.chain_rule(x, &shape), Self::by_ground_angle(&shape));
         let targets = self.phases.iter().zip(task.points()).zip(task.weights());
         for (j, ((phase, target), weight)) in targets.enumerate() {
-            let crank = phase * turn;
+            let own = self.own_crank(j, state);
+            let crank = own.unwrap_or(phase * turn);
             let at = kernel.at(crank.re, crank.im);
             let [c, d, p] = [at.crank_pin, at.follower_pin, at.coupler_point].map(point);
             let frame = Frame {
@@ -335,9 +413,12 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
             };
             block.residual[..ANGLE_ROW].copy_from_slice(&xy(target - p));
             let components = [|z: Complex| -z.re, |z: Complex| -z.im];
-            for (row, component) in block.jacobian.iter_mut().zip(components) {
+            let common = |by_crank: f64| if own.is_some() { 0.0 } else { by_crank };
+            let rows = block.jacobian.iter_mut().zip(&mut block.tangent);
+            for ((row, tangent), component) in rows.zip(components) {
                 let (by_shape, by_crank) = (gradient.shape.map(component), component(gradient.crank_angle));
-                *row = self.by_design(&rule, by_shape, by_crank, by_ground_angle);
+                *row = self.by_design(&rule, by_shape, common(by_crank), by_ground_angle);
+                *tangent = if own.is_some() { by_crank } else { 0.0 };
             }
             if let Some(body) = body.filter(|body| body.angles[j].is_some()) {
                 let Some((by_shape, by_crank)) = coupler_gradient(&frame, shape.crank, shape.coupler) else {
@@ -347,31 +428,56 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
                 let by_shape = by_shape.map(|by| -weight * by);
                 block.residual[ANGLE_ROW] = angle_residual(body, j, frame.coupler, unknowns[N - 1]);
                 block.jacobian[ANGLE_ROW] =
-                    self.by_design(&rule, by_shape, -weight * by_crank, by_ground_angle);
+                    self.by_design(&rule, by_shape, common(-weight * by_crank), by_ground_angle);
                 block.jacobian[ANGLE_ROW][N - 1] = -weight;
+                block.tangent[ANGLE_ROW] = if own.is_some() { -weight * by_crank } else { 0.0 };
             }
             each(&block);
         }
         true
     }
 
-    fn retract(&self, _: &[f64; N], _: &Positions, _: &[f64], _: &[f64; N], _: &mut Positions) -> bool {
+    fn retract(
+        &self,
+        _: &[f64; N],
+        state: &Positions,
+        tau: &[f64],
+        to: &[f64; N],
+        out: &mut Positions,
+    ) -> bool {
+        if state.is_empty() {
+            return true;
+        }
+        let Some(shape) = self.space.shape(&design_of(to)) else { return false };
+        let kernel = shape.kernel(self.setting.assembly);
+        for (j, (position, [e, u])) in out.iter_mut().zip(state).enumerate() {
+            *position = [*e, *u];
+            if self.problem.task().is_untimed(j) {
+                *position = position_at(&kernel, e * Complex::from_polar(1.0, tau[j]));
+            }
+        }
         true
     }
 
-    fn constraints(&self, unknowns: &[f64; N], _: &Positions, each: &mut EachConstraint<'_, N>) {
+    fn constraints(&self, unknowns: &[f64; N], state: &Positions, each: &mut EachConstraint<'_, N>) {
         let x = &design_of(unknowns);
         let Some(shape) = self.space.shape(x) else { return };
         let (rule, by_ground_angle) = (self.space.chain_rule(x, &shape), Self::by_ground_angle(&shape));
         let frame = own_frame(unknowns);
-        self.requirements.rows(self.setting.aim, &shape, &self.motion(x, &shape), frame, &mut |row| {
-            each(row.value, &|| {
-                let mut gradient = self.by_design(&rule, row.shape, row.by_turn(), by_ground_angle);
-                if let Some(by_frame) = gradient.get_mut(DESIGN) {
-                    *by_frame = row.by_frame;
-                }
-                ConstraintRow { value: row.value, gradient, own: [None; MOST_OWN] }
-            });
-        });
+        self.requirements.rows(
+            self.setting.aim,
+            &shape,
+            &self.motion_of(x, &shape, state),
+            frame,
+            &mut |row| {
+                each(row.value, &|| {
+                    let mut gradient = self.by_design(&rule, row.shape, row.by_turn(), by_ground_angle);
+                    if let Some(by_frame) = gradient.get_mut(DESIGN) {
+                        *by_frame = row.by_frame;
+                    }
+                    ConstraintRow { value: row.value, gradient, own: [None; MOST_OWN] }
+                });
+            },
+        );
     }
 }

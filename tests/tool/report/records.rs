@@ -88,6 +88,9 @@ pub fn candidate(
         crank_deg: crank_angles.iter().map(|a| a.to_degrees()).collect(),
         t1_at: t1.to_vec(),
         frame_deg: error.angle.as_ref().map(|angle| angle.frame.to_degrees()),
+        input_offset_deg: None,
+        output_offset_deg: None,
+        sense: None,
         error: ErrorRecord {
             objective: error.objective,
             sum_sq: error.sum_sq,
@@ -105,6 +108,7 @@ pub fn candidate(
                 max_deg: angle.max.to_degrees(),
                 max_at: angle.max_at,
             }),
+            output: None,
             to_raw: None,
         },
         linkage_type: mobility.linkage_type.expect("can be joined"),
@@ -174,7 +178,7 @@ pub fn path(points: &[[f64; 2]], closed: bool) -> TaskSpec {
 pub fn k18() -> Record {
     let mut spec = path(&K18, true);
     let crank_deg: Vec<f64> = (0..18).map(|i| 20.0 * f64::from(i)).collect();
-    spec.timing = Some(TimingSpec { crank_deg, offset: AngleOffset::Free });
+    spec.timing = Some(TimingSpec { crank_deg, offset: AngleOffset::Free, free: Vec::new() });
     let mut record = record("eighteen-point", spec);
     record.problem.source = Some("Kunjur & Krishnamurty, 1997".into());
     record.problem.unit = Some(Unit::M);
