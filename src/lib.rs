@@ -82,14 +82,15 @@ pub use report::export::{
 };
 pub use report::html::report_html;
 pub use synthesis::{Observer, Progress};
-pub use task::{AngleOffset, Defect, Problem, ProblemBuilder, Task, TaskError, TaskOptions, Timing};
+pub use task::{AngleOffset, Defect, Problem, ProblemBuilder, Sense, Task, TaskError, TaskOptions, Timing};
 
 /// Problems as data: every key of a problem file.
 pub mod spec {
     pub use crate::task::region::Region;
     pub use crate::task::spec::{
-        CertifySpec, ClosingPolicy, DesignSpec, DirectionPolicy, Limits, Method, Objective, OnePolicy,
-        OrderPolicy, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec, TransmissionOver, Variables,
+        BodySpec, CertifySpec, ClosingPolicy, DesignSpec, DirectionPolicy, FormulaSpec, Limits, Method,
+        Objective, OnePolicy, OrderPolicy, OutputSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec,
+        TimingSpec, TransmissionOver, Variables,
     };
 }
 

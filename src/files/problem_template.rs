@@ -187,7 +187,7 @@ unit = \"mm\"                     # mm, cm, m or in: labels lengths, scales draw
 const TIMING: &str = r#"
 # Does it matter at which crank angle each point is passed? One angle a point, counter-clockwise positive.
 # [task.path.timing]
-# crank_deg = [0, 30, 60]
+# crank_deg = [0, 30, 60]       # "free" in place of an angle: any between its neighbours will do
 # offset = "free"               # only the increments count; "fixed": from the x axis; "ground": from A to B
 "#;
 

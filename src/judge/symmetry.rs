@@ -50,7 +50,7 @@ impl Symmetries {
     pub fn of(problem: &Problem) -> Self {
         let task = problem.task();
         let all = task.points();
-        if all.len() > MOST_POINTS || task.body().is_some() || task.is_partly_timed() {
+        if all.len() > MOST_POINTS || task.body().is_some() {
             return Symmetries::default();
         }
         // The closing point is the first one again.
@@ -115,12 +115,13 @@ impl Symmetry {
         let fits = (0..points.len()).all(|j| (turn * from(j) - to(j)).norm() <= TYPED * task.size());
         let same = |list: &[f64]| (0..points.len()).all(|j| list[j] == list[order[j]]);
         let of_point = same(task.weights()) && task.tolerances().is_none_or(same);
+        let as_timed = (0..points.len()).all(|j| task.is_untimed(j) == task.is_untimed(order[j]));
         let shift = mean - turn * if mirrors { mean.conj() } else { mean };
         let mut order = order.to_vec();
         if task.repeats_first() {
             order.push(order[0]);
         }
-        (fits && of_point).then_some(Symmetry { mirrors, turn, shift, order })
+        (fits && of_point && as_timed).then_some(Symmetry { mirrors, turn, shift, order })
     }
 
     fn carried(&self, p: Complex) -> Complex {
@@ -163,19 +164,23 @@ impl Symmetry {
 
 /// Returns the prescribed angles of a linkage, if the angles that it has are equal to them up to whole turns.
 fn in_step(problem: &Problem, linkage: &FourBar, offset: AngleOffset, has: &[f64]) -> Option<Vec<f64>> {
-    let written = &problem.spec().task.timing.as_ref()?.crank_deg;
-    let (first, asked) = (*has.first()?, *written.first()?);
+    let (task, written) = (problem.task(), &problem.spec().task.timing.as_ref()?.crank_deg);
+    let timed = (0..has.len()).find(|j| !task.is_untimed(*j))?;
+    let (first, asked) = (*has.get(timed)?, *written.get(timed)?);
     problem.directions().iter().find_map(|direction| {
         let base = match offset {
             AngleOffset::Free => first - direction * asked,
             AngleOffset::Fixed => 0.0,
             AngleOffset::Ground => linkage.ground_angle().to_degrees(),
         };
-        let asked: Vec<f64> = written.iter().map(|deg| base + direction * deg).collect();
-        let off = |(has, asked): (&f64, &f64)| {
-            ((has - asked) / 360.0 - ((has - asked) / 360.0).round()).abs() * 360.0
+        // An angle that is free is that of the image, on the turn of its neighbours.
+        let off = |has: f64, asked: f64| has - asked - 360.0 * ((has - asked) / 360.0).round();
+        let angle = |(j, (has, written)): (usize, (&f64, &f64))| {
+            let asked = base + direction * written;
+            let off = off(*has, asked);
+            if task.is_untimed(j) { Some(asked + off) } else { (off.abs() <= ANGLE_DEG).then_some(asked) }
         };
-        has.iter().zip(&asked).all(|pair| off(pair) <= ANGLE_DEG).then_some(asked)
+        has.iter().zip(written).enumerate().map(angle).collect()
     })
 }
 

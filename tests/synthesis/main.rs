@@ -17,6 +17,7 @@ mod functions;
 mod invariance;
 mod ladder;
 mod motion;
+mod partly_timed;
 #[path = "../common/poses.rs"]
 mod poses;
 mod projection;

@@ -415,7 +415,10 @@ fn what_cannot_be_run_is_said_with_exit_2() {
     fs::write(house.path().join("bare/plain.toml"), plain).expect("written");
     let (code, _, stderr) = answer(linkwright(house.path()).args(["suite", "--problems", "bare"]));
     assert_eq!(code, Some(2));
-    assert!(stderr.contains("best_known_sum_sq (of a path) or objective (of a motion)"), "{stderr}");
+    assert!(
+        stderr.contains("best_known_sum_sq (of a path) or objective (of a motion or a function)"),
+        "{stderr}"
+    );
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn settings(line: &str) -> Vec<(String, String)> {
 }
 
 /// Words that a message of our own names for a key; the tables that it may stand in.
-const TABLES: [&str; 5] = ["", "solve.", "require.", "task.path.", "task.path.timing."];
+const TABLES: [&str; 6] = ["", "solve.", "require.", "task.path.", "task.path.timing.", "task.function."];
 
 /// Whether a reader takes a word for a key; in a problem that is made for it where the word asks for one.
 fn is_taken(key: &str, value: &str) -> bool {
@@ -43,9 +43,12 @@ fn is_taken(key: &str, value: &str) -> bool {
         [task.path.timing]\ncrank_deg = [0, 20, 40, 60, 80]\n[solve]\nmethod = \"genetic\"\n";
     let nine = "format = 1\n[task.path]\npoints = [[0.25, 0], [0.52, 0.1], [0.8, 0.7], [1.2, 1], [1.4, 1.3], [1.1, 1.48], \
         [0.7, 1.4], [0.2, 1], [0.02, 0.4]]\n";
+    let function = "format = 1\n[task.function]\ninput_deg = [0, 10, 20, 30]\noutput_deg = [0, 2, 5, 9]\n";
     TABLES.iter().any(|table| {
         let set = [(format!("{table}{key}"), value.to_owned())];
-        [free, timed, nine].iter().any(|text| problem_file::parse("it.toml", text, None, &set).is_ok())
+        [free, timed, nine, function]
+            .iter()
+            .any(|text| problem_file::parse("it.toml", text, None, &set).is_ok())
     })
 }
 

@@ -274,7 +274,7 @@ fn columns_stand_in_any_order_and_strangers_are_named() {
         "remark,tolerance,weight,crank_deg,y,x,wieght\nstart,0,2,-10,1,2,9\n\"a, b\",0.5,1,350,3,4,9\n";
     let read = points_file::parse("p.csv", text).unwrap();
     assert_eq!(read.points, [[2.0, 1.0], [4.0, 3.0]]);
-    assert_eq!(read.crank_deg, Some(vec![-10.0, 350.0]));
+    assert_eq!(read.crank_deg, Some(vec![Some(-10.0), Some(350.0)]));
     assert_eq!(read.weight, Some(vec![2.0, 1.0]));
     assert_eq!(read.tolerance, Some(vec![0.0, 0.5]));
     assert_eq!(&read.text[read.rows[1].clone()], "\"a, b\",0.5,1,350,3,4,9");

@@ -30,6 +30,9 @@ pub enum NotHere {
     /// The task is a motion.
     #[error("the studio draws paths, and this task has poses or pairs: run it with `linkwright synth`")]
     Poses,
+    /// Some crank angles are prescribed and others free.
+    #[error("the studio has no free crank angles among given ones: run it with `linkwright synth`")]
+    PartlyTimed,
     /// The problem is another one after it is converted to an edit and back.
     #[error("the studio cannot hold all of this problem ({0}): run it with `linkwright synth`")]
     Other(String),
@@ -274,6 +277,9 @@ impl Ask {
         if path.body.is_some() {
             return Err(NotHere::Poses);
         }
+        if path.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
+            return Err(NotHere::PartlyTimed);
+        }
         let n = path.points.len();
         if !(FEWEST_POINTS..=MOST_POINTS).contains(&n) {
             return Err(NotHere::Points(n));
@@ -420,6 +426,10 @@ mod tests {
                 let problem = load_any(&path, &[]).expect("a problem");
                 if problem.spec.task.body.is_some() {
                     assert!(matches!(Ask::of(&problem), Err(NotHere::Poses)), "{}", path.display());
+                    continue;
+                }
+                if problem.spec.task.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
+                    assert!(matches!(Ask::of(&problem), Err(NotHere::PartlyTimed)), "{}", path.display());
                     continue;
                 }
                 let ask = Ask::of(&problem).unwrap_or_else(|e| panic!("{}: {e}", path.display()));

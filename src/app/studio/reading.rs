@@ -20,6 +20,9 @@ pub fn read(text: &Text) -> Result<Reading, AskError> {
         Kind::Csv => {
             let csv = points_file::parse(file, &text.text).map_err(AskError::Text)?;
             let timing = csv.crank_deg.and_then(|angles| TimingSpec::partly(&angles, AngleOffset::default()));
+            if timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
+                return Err(NotHere::PartlyTimed.into());
+            }
             let tolerances = csv.tolerance;
             let ask = Ask { points: csv.points, weights: csv.weight, tolerances, timing, ..blank() };
             (ask, false, csv.warnings)

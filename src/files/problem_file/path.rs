@@ -135,7 +135,9 @@ fn explain_task(toml: &TomlText<'_>, target: &Target, spec: &TaskSpec, error: &T
         TaskError::AdjacentEqual(i) => {
             let [x, y] = spec.points[*i];
             let message = format!("{}s {} and {} are equal: ({x}, {y})", target.one, i + 1, i + 2);
-            target.at_point(toml, i + 1, message).with_help(equal_neighbours_remedy(spec, *i))
+            target
+                .at_point(toml, i + 1, message)
+                .with_help("remove one of them, or prescribe the timing: at two crank angles the point dwells there")
         }
         TaskError::NoExtent => target
             .at_all(toml, "all points are equal: a path needs an extent".into())
@@ -157,16 +159,4 @@ fn explain_task(toml: &TomlText<'_>, target: &Target, spec: &TaskSpec, error: &T
             .at("task.motion.angle_weight", error.to_string())
             .with_help("write the length that an angle error of one radian counts like; it has the size of the body"),
     })
-}
-
-/// Returns the remedy for equal points i and i + 1.
-fn equal_neighbours_remedy(spec: &TaskSpec, i: usize) -> String {
-    match &spec.timing {
-        None => "remove one of them, or prescribe the timing with the same crank angle at both".to_owned(),
-        Some(t) => format!(
-            "remove one of them; equal neighbours need equal crank angles, these have {} and {} degrees",
-            t.crank_deg[i],
-            t.crank_deg[i + 1]
-        ),
-    }
 }

@@ -1,0 +1,123 @@
+//! Targets with free crank angles among timed ones: derivatives, what the search finds, and that the records are true.
+
+use crate::common::parse;
+use crate::motion::{ALONE, solved};
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::numbers::arithmetic::streams::{stream, uniform};
+use linkwright::internals::numbers::optimise::levenberg_marquardt::derivative_error;
+use linkwright::internals::synthesis::multistart::{LONG_FIT, judged, polish};
+use linkwright::internals::synthesis::nearest::nearest_positions;
+use linkwright::internals::synthesis::starts::Starts;
+use linkwright::internals::synthesis::{Budget, Context};
+use linkwright::internals::task::forms::timed::TimedPathFit;
+use linkwright::spec::{ProblemSpec, TimingSpec};
+use linkwright::{AngleOffset, Problem};
+use std::sync::atomic::AtomicBool;
+
+/// A foot 120 mm along the ground in thirteen even steps while the crank turns by `stance_deg`, and back over (60, 40) at any
+/// angle.
+fn foot(stance_deg: f64, lines: &str) -> ProblemSpec {
+    let points: Vec<[f64; 2]> = (0..13).map(|j| [10.0 * f64::from(j), 0.0]).chain([[60.0, 40.0]]).collect();
+    let crank: Vec<String> = (0..13).map(|j| format!("{:?}", stance_deg / 12.0 * f64::from(j))).collect();
+    parse(&format!(
+        "format = 1\nunit = \"mm\"\n[task.path]\npoints = {points:?}\nclosed = true\n[task.path.timing]\n\
+         crank_deg = [{}, \"free\"]\n[require]\ntype = [\"crank-rocker\", \"double-crank\"]\ntransmission_deg_min = 30\n{lines}",
+        crank.join(", ")
+    ))
+    .spec
+}
+
+#[test]
+fn a_foot_goes_at_constant_speed_as_well_as_many_random_starts_find() {
+    for stance in [90.0, 120.0, 150.0, 180.0] {
+        let spec = foot(stance, ALONE);
+        let problem = Problem::new(spec.clone()).expect("a problem");
+        let cancel = AtomicBool::new(false);
+        let budget = Budget::new(&cancel, None);
+        let context = Context::new(&problem, &budget);
+        let starts = Starts::new(&problem);
+        let draws = &mut stream(17, 0);
+        let mut least = f64::INFINITY;
+        for _ in 0..400 {
+            let Some(start) = starts.draw(draws) else { continue };
+            let Some(end) = polish(context, start, LONG_FIT, 5000).end else { continue };
+            let Some(candidate) = judged(&problem, &end).filter(|candidate| candidate.accepted) else {
+                continue;
+            };
+            least = least.min(candidate.error.objective);
+        }
+        for seed in 1..=3 {
+            let mut spec = spec.clone();
+            spec.solve.seed = seed;
+            let record = solved(spec);
+            assert_eq!(verify(&record).expect("a record"), []);
+            let best = &record.candidates[0];
+            assert!(best.accepted && best.transmission_deg.worst > 30.0 - 1e-6);
+            let rms = (best.error.objective / 14.0).sqrt();
+            assert!(rms <= 1.01 * (least / 14.0).sqrt(), "{stance}: {rms} {}", (least / 14.0).sqrt());
+            // The crank turns evenly under the stance, and on over the return.
+            let turned: Vec<f64> = best.crank_deg.iter().map(|deg| deg - best.crank_deg[0]).collect();
+            let way = turned[12].signum();
+            for (j, deg) in turned.iter().enumerate().take(13) {
+                assert!((deg - way * stance / 12.0 * j as f64).abs() < 1e-9);
+            }
+            assert!(way * turned[13] > stance && way * turned[13] < 360.0, "{}", turned[13]);
+        }
+    }
+}
+
+#[test]
+fn derivatives_of_a_partly_timed_path_agree_with_central_differences() {
+    let problem = Problem::new(foot(150.0, "")).expect("a problem");
+    let starts = Starts::new(&problem);
+    let draws = &mut stream(18, 0);
+    let mut errors = Vec::new();
+    while errors.len() < 30 {
+        let Some(start) = starts.draw(draws) else { continue };
+        let fit = TimedPathFit::new(&problem, start.setting).expect("it is timed");
+        let mut positions = start.positions.clone();
+        // Away from the nearest point, so that the own unknown has a gradient.
+        positions[13][0] *= linkwright::Complex::from_polar(1.0, uniform(draws, 0.01, 0.05));
+        let mut steps = [1e-4; 10];
+        steps[9] = 1e-6;
+        errors.extend(
+            derivative_error(&fit, &start.design, &positions, &steps, 1e-6).map(|error| error / 100.0),
+        );
+    }
+    crate::motion::assert_mostly_small(errors);
+}
+
+#[test]
+fn guesses_of_free_angles_lie_evenly_between_their_neighbours() {
+    let of = |angles: &[Option<f64>]| {
+        TimingSpec::partly(angles, AngleOffset::Free).expect("some are given").crank_deg
+    };
+    assert_eq!(of(&[Some(0.0), None, Some(90.0)]), [0.0, 45.0, 90.0]);
+    assert_eq!(of(&[Some(0.0), Some(150.0), None, None]), [0.0, 150.0, 220.0, 290.0]);
+    assert_eq!(of(&[None, Some(10.0), Some(190.0)]), [-80.0, 10.0, 190.0]);
+    assert_eq!(of(&[Some(0.0), Some(-100.0), None]), [0.0, -100.0, -230.0]);
+    assert_eq!(TimingSpec::partly(&[None, None], AngleOffset::Free), None);
+}
+
+#[test]
+fn a_linkage_by_itself_is_measured_at_the_timed_angles_and_nearest_between_them() {
+    let spec = foot(150.0, ALONE);
+    let problem = Problem::new(spec.clone()).expect("a problem");
+    let best = solved(spec).candidates.remove(0);
+    let (crank_deg, _) = nearest_positions(&problem, &best.linkage).expect("it closes");
+    for (has, found) in best.crank_deg.iter().zip(&crank_deg) {
+        // To a sample between the neighbours where the angle is free.
+        assert!((has - found).abs() < 6.0, "{has} {found}");
+    }
+}
+
+#[test]
+fn a_point_may_dwell() {
+    let text = format!(
+        "format = 1\n[task.path]\npoints = [[0, 0], [0, 0], [0, 0], [3, 4], [6, 0]]\n[task.path.timing]\n\
+         crank_deg = [0, 15, 30, 120, 200]\n{ALONE}"
+    );
+    let record = solved(parse(&text).spec);
+    assert_eq!(verify(&record).expect("a record"), []);
+    assert!(record.candidates[0].accepted && record.candidates[0].error.rms < 0.2);
+}
