@@ -5,6 +5,7 @@
 //! cargo bench --bench motion
 //!     --problems N        problems, of random linkages of all types (400)
 //!     --starts N          random starts of each (3000); 0: none
+//!     --seed N            the seed of the problems (9)
 //! ```
 //!
 //! Problem i has 6, 8, 12 or 30 poses on one branch, with noise of 0, 0.5 or 2 % of the target's size and as many
@@ -72,10 +73,11 @@ fn of_random_starts(problem: &Problem, poses: &[(Complex, f64)], starts: u64, se
 
 fn main() {
     let (problems, starts) = (option("--problems", 400), option("--starts", 3000));
+    let seed = option("--seed", 9);
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
     let (mut times, mut reached, mut nothing) = (Vec::new(), 0, 0);
     for index in 0..problems {
-        let draws = &mut stream(9, index);
+        let draws = &mut stream(seed, index);
         let n = [6, 8, 12, 30][index as usize % 4];
         let noise = [0.0, 0.005, 0.02][index as usize % 3];
         let taken = poses::taken(draws, n, noise);

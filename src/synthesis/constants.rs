@@ -103,17 +103,30 @@ pub mod motion {
     /// Starts fitted for a few steps, and to convergence.
     pub const SHORT: usize = 8;
     pub const LONG: usize = 3;
+    /// Ends beyond these fitted to convergence whose points have strayed, if they are better.
+    pub const ASTRAY: usize = 1;
     /// Rounds that have to reach the best answer, or to come near it.
-    pub const HITS: usize = 4;
+    pub const HITS: usize = 5;
     pub const NEAR_HITS: usize = 10;
     /// A search ends that has gone on for so many independent rounds, and so many times as long as it took to come within
     /// a thousandth of its best answer.
-    pub const QUIET_ROUNDS: u64 = 36;
+    pub const QUIET_ROUNDS: u64 = 40;
     pub const QUIET_TIMES: u64 = 5;
     /// One round in so many starts near the best known answers: so many of them, and so many starts.
     pub const NEAR_EVERY: u64 = 4;
     pub const LEADERS: usize = 4;
     pub const NEAR: usize = 12;
+    /// Of the others one in so many crosses dyads of known answers with others: the pairs drawn, of which `SHORT` are
+    /// fitted.
+    pub const CROSSED_EVERY: u64 = 3;
+    pub const CROSSED: usize = 24;
+    /// The other dyads of a crossing: pins drawn, pins beside known ones with the least and greatest distance in sizes, and
+    /// the most minima of the map of a known answer's own poses with its places a side.
+    pub const CROSSED_PINS: usize = 6;
+    pub const BESIDE: usize = 6;
+    pub const BESIDE_BETWEEN: (f64, f64) = (0.02, 2.0);
+    pub const CROSSED_MINIMA: usize = 6;
+    pub const CROSSED_GRID: usize = 41;
     /// Least number of batches, and batches without a new answer that end a search for further distinct answers.
     pub const LEAST_BATCHES: u64 = 3;
     pub const QUIET_BATCHES: u64 = 8;

@@ -5,21 +5,24 @@
 //! best `LONG` of them to convergence, and has the ends judged, driven from either side. Rounds run in parallel in batches
 //! and are read in their order: the number of threads changes nothing but the time. The search ends when enough rounds
 //! have reached the best answer (or the search has gone on for several times as long as it took to reach it) and as many distinct answers as were asked for are known, or no new one has come for
-//! `QUIET_BATCHES` batches; an exact answer needs no second hit. Where exact answers form a family ([`super::family`]), several
+//! `QUIET_BATCHES` batches; an exact answer needs no second hit. Some rounds start from known answers instead, near them or
+//! with one of their dyads ([`crossing`]); these do not count as hits. Where exact answers form a family ([`super::family`]), several
 //! batches are searched and the best answers led to better transmission angles.
 
+mod crossing;
 mod starts;
 
 use super::belief::{Belief, NEARLY, SAME_OPTIMUM};
 use super::constants::motion::{
-    BATCH, FAMILY_BATCHES, HITS, KEPT, LEADERS, LEAST_BATCHES, LONG, NEAR, NEAR_EVERY, NEAR_HITS,
-    QUIET_BATCHES, QUIET_ROUNDS, QUIET_TIMES, SHORT,
+    ASTRAY, BATCH, CROSSED_EVERY, FAMILY_BATCHES, HITS, KEPT, LEADERS, LEAST_BATCHES, LONG, NEAR, NEAR_EVERY,
+    NEAR_HITS, QUIET_BATCHES, QUIET_ROUNDS, QUIET_TIMES, SHORT,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
 use super::family::{climb, freedom};
 use super::moves::near;
 use super::multistart::{LONG_FIT, RoundOutcome, SHORT_FIT, Spender, by_merit, glanced, promise};
 use super::polish::promising;
+use super::required::strayed;
 use super::states::{MotionState, SearchState, of_as_many_points};
 use super::{Context, HitsSoFar};
 use crate::judge::rank::{exact_cost, searched, sort};
@@ -37,6 +40,17 @@ struct Motion<'a> {
     /// The number of free parameters that are left when all targets are met.
     freedom: usize,
     at: MotionState,
+}
+
+/// What a round starts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Dyads that the poses suggest, or drawn ones; it alone counts for the stopping rule.
+    Independent,
+    /// Places near the best known answers.
+    Near,
+    /// One dyad of a known answer beside another one.
+    Crossed,
 }
 
 /// Searches until the best is believed, the limit is reached, or the patience is at an end; `None` if the task is no
@@ -72,13 +86,21 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
 }
 
 impl Motion<'_> {
-    /// Returns whether a round starts near known answers; it does not count for the stopping rule.
-    fn is_near(&self, index: u64) -> bool {
-        self.freedom == 0 && index % NEAR_EVERY == NEAR_EVERY - 1 && index / BATCH > 0
+    /// Returns what a round starts from.
+    fn kind(&self, index: u64) -> Kind {
+        if self.freedom > 0 || index / BATCH == 0 {
+            Kind::Independent
+        } else if index % NEAR_EVERY == NEAR_EVERY - 1 {
+            Kind::Near
+        } else if index % CROSSED_EVERY == 1 && self.starts.are_crossed() {
+            Kind::Crossed
+        } else {
+            Kind::Independent
+        }
     }
 
-    /// Returns starts near the best known answers.
-    fn near(&self, problem: &Problem, draws: &mut Stream) -> Vec<Start> {
+    /// Returns the best known answers, each once.
+    fn leaders(&self, problem: &Problem) -> Vec<&Candidate> {
         let mut leaders: Vec<&Candidate> =
             self.at.found.iter().filter(|candidate| promising(problem, candidate)).collect();
         // Of one answer, once from either side.
@@ -87,8 +109,13 @@ impl Motion<'_> {
             (one - other).abs() <= SAME_OPTIMUM * other
         });
         leaders.truncate(LEADERS);
+        leaders
+    }
+
+    /// Returns starts near the best known answers.
+    fn near(&self, problem: &Problem, draws: &mut Stream) -> Vec<Start> {
         let ends: Vec<Start> =
-            leaders.into_iter().filter_map(|candidate| start_at(problem, candidate)).collect();
+            self.leaders(problem).into_iter().filter_map(|candidate| start_at(problem, candidate)).collect();
         if ends.is_empty() {
             return Vec::new();
         }
@@ -103,10 +130,10 @@ impl Motion<'_> {
         let mut draws = stream(problem.spec().solve.seed, index);
         let dyads = |draws: &mut Stream| self.starts.dyads(index == 0, draws);
         let mut screened: Vec<(f64, Start)> = Vec::new();
-        let starts = if self.is_near(index) {
-            self.near(problem, &mut draws)
-        } else {
-            self.starts.pairs(&dyads(&mut draws))
+        let starts = match self.kind(index) {
+            Kind::Independent => self.starts.pairs(&dyads(&mut draws)),
+            Kind::Near => self.near(problem, &mut draws),
+            Kind::Crossed => self.starts.crossed(&self.leaders(problem), &mut draws),
         };
         for mut start in starts {
             if spender.is_at_its_end() {
@@ -131,7 +158,11 @@ impl Motion<'_> {
         // Exact ends are different answers, of which the best transmitting is wanted.
         by_merit(&mut fitted, SHORT);
         let exact = fitted.iter().take_while(|(merit, _)| *merit <= self.exact).count();
-        fitted.truncate(LONG.max(exact));
+        if exact == 0 {
+            fitted = on_course(problem, fitted);
+        } else {
+            fitted.truncate(LONG.max(exact));
+        }
         let judging = context.judging();
         for (_, start) in fitted {
             let Some((_, end)) = spender.fit_as_required(problem, start, LONG_FIT) else { continue };
@@ -168,6 +199,29 @@ impl Motion<'_> {
     }
 }
 
+/// Returns the `LONG` best short ends whose points lie on circuits and branches that may go together, driven from whichever
+/// side they do, and of those that are better but have strayed from either side the best `ASTRAY`.
+///
+/// The least errors of all are often those of ends that have strayed and that the referee refuses.
+fn on_course(problem: &Problem, fitted: Vec<(f64, Start)>) -> Vec<(f64, Start)> {
+    let (mut kept, mut astray) = (Vec::with_capacity(LONG + ASTRAY), Vec::new());
+    for (merit, start) in fitted {
+        if !strayed(problem, &start) {
+            kept.push((merit, start));
+        } else if let Some(other) = swapped(problem, &start).filter(|other| !strayed(problem, other)) {
+            kept.push((merit, other));
+        } else {
+            astray.push((merit, start));
+        }
+    }
+    kept.truncate(LONG);
+    let bar = kept.first().map_or(f64::INFINITY, |(merit, _)| *merit);
+    astray.retain(|(merit, _)| *merit < bar);
+    astray.truncate(if kept.is_empty() { LONG } else { ASTRAY });
+    kept.extend(astray);
+    kept
+}
+
 impl Strategy for Motion<'_> {
     type Batch = Vec<RoundOutcome>;
     const PHASE: &'static str = "least-squares";
@@ -197,7 +251,7 @@ impl Strategy for Motion<'_> {
         let first = self.at.batch * BATCH;
         self.at.batch += 1;
         for (index, outcome) in (first..).zip(batch) {
-            let independent = !self.is_near(index);
+            let independent = self.kind(index) == Kind::Independent;
             self.at.draws += outcome.draws;
             self.at.evaluations += outcome.evaluations;
             for candidate in outcome.found {

@@ -26,10 +26,10 @@ const CURVE: usize = 400;
 
 /// A generator of starts for the poses of a problem.
 pub(in crate::synthesis) struct DyadStarts<'a> {
-    problem: &'a Problem,
+    pub(super) problem: &'a Problem,
     /// The poses of the targets that give an angle, with their weights.
-    poses: Vec<Pose>,
-    weights: Vec<f64>,
+    pub(super) poses: Vec<Pose>,
+    pub(super) weights: Vec<f64>,
     /// Whether the exact answers form a family.
     family: bool,
 }
@@ -81,6 +81,12 @@ impl<'a> DyadStarts<'a> {
         distinct
     }
 
+    /// Returns whether dyads of known answers are crossed with others: all targets are poses, and more than can be met
+    /// exactly.
+    pub(super) fn are_crossed(&self) -> bool {
+        !self.family && self.poses.len() == self.problem.task().len() && self.poses.len() > 5
+    }
+
     /// Draws dyads from the curve of those through four poses; none for another number of poses.
     fn on_the_curve(&self, stream: &mut Stream) -> Vec<Dyad> {
         let Ok(four) = <[Pose; 4]>::try_from(self.poses.as_slice()) else { return Vec::new() };
@@ -90,7 +96,7 @@ impl<'a> DyadStarts<'a> {
     }
 
     /// Draws a pin of the body, with the circle that it stays nearest to.
-    fn drawn(&self, stream: &mut Stream) -> Option<Dyad> {
+    pub(super) fn drawn(&self, stream: &mut Stream) -> Option<Dyad> {
         let reach = REACH * self.problem.task().size();
         let [x0, y0, x1, y1] = match &self.problem.spec().require.pins_in {
             None => [-reach, -reach, reach, reach],
@@ -133,7 +139,7 @@ impl<'a> DyadStarts<'a> {
     }
 
     /// Returns the start at a pair of dyads; the crank is the first one or, if that alone is on one branch, the second.
-    fn start(&self, pair: &Pair) -> Option<Start> {
+    pub(super) fn start(&self, pair: &Pair) -> Option<Start> {
         let positions = self.positions(pair)?;
         let setting = Setting {
             aim: None,
