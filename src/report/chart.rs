@@ -116,13 +116,16 @@ impl Chart {
         }
         for (i, series) in self.series.iter().enumerate() {
             let attributes = outline(series.colour, 1.8) + ROUND_CORNERS + dashes(i);
+            // Values without a line between them are seen beside another series.
+            let is_dotted = series.strands.iter().all(|strand| strand.len() == 1);
+            let diameter = if is_dotted && series.strands.len() > 1 { 5.5 } else { 3.0 };
             for strand in &series.strands {
                 // Values far outside are moved nearer, to coordinates that viewers can read.
                 let far = 4.0 * plot.height;
                 let spots: Vec<Spot> =
                     strand.iter().map(|(x, y)| Spot::new(x_of(*x), y_of(*y).clamp(-far, far))).collect();
                 match spots.as_slice() {
-                    [only] => canvas.dots(&[*only], 3.0, series.colour),
+                    [only] => canvas.dots(&[*only], diameter, series.colour),
                     _ => canvas.path(&spots, false, &attributes),
                 }
             }

@@ -596,6 +596,11 @@ export interface TimingSpec {
    * One a target, degrees, counter-clockwise positive.
    */
   crank_deg: number[];
+  /**
+   * The targets whose crank angle is free after all, counted from 0, in their order: what `crank_deg` says of them lies
+   * between their neighbours and is a guess.
+   */
+  free?: number[];
   offset: AngleOffset;
 }
 /**
