@@ -81,7 +81,13 @@ pub fn searched(problem: &Problem, candidate: &Candidate) -> f64 {
     if problem.spec().solve.objective == Objective::SumOfSquares {
         return candidate.error.objective;
     }
-    let error = structural_error(problem, candidate);
+    let error = if problem.is_function() {
+        // At the offset of the least squares, whichever is least in the largest error.
+        let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+        problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at, None)
+    } else {
+        structural_error(problem, candidate)
+    };
     error.map_or(f64::INFINITY, |error| error.objective)
 }
 

@@ -79,6 +79,8 @@ pub mod rounds {
     pub const BATCH: u64 = 8;
     /// The same of a function, whose starts are better.
     pub const FUNCTION_BATCH: u64 = 2;
+    /// Rounds that have to reach the best answer of a function: the first round has starts near all of them.
+    pub const FUNCTION_HITS: usize = 4;
     /// Least number of batches, so that rarer answers have their chance, and batches without a new answer that end a
     /// search for further distinct answers.
     pub const LEAST_BATCHES: u64 = 3;
@@ -297,6 +299,9 @@ pub mod polish {
     /// Number of different optima of the sum of squares that are polished: the best largest deviation need not lie in
     /// the best of them.
     pub const BASINS: usize = 24;
+    /// The same of a function, whose basins are few; and the optima around which hops start.
+    pub const FUNCTION_BASINS: usize = 5;
+    pub const FUNCTION_HOPPED: usize = 1;
     /// Least number of distinct optima to find before they are polished.
     pub const LEAST_BASINS: usize = 8;
     /// Most steps of a polish.

@@ -28,6 +28,10 @@ pub fn nearest_positions(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f6
     }
 }
 
+/// The distance of the nearest of the samples between two timed targets from the nearest point, degrees: one in 48 of a turn
+/// at most.
+const BESIDE_SAMPLE_DEG: f64 = 7.5;
+
 /// As [`prescribed`] of the timed targets, with the others where the coupler point is nearest between their neighbours.
 fn partly_timed(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let task = problem.task();
@@ -59,9 +63,29 @@ fn partly_timed(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<A
     let space = problem.space(side);
     let design = space.coordinates(&Shape::from(linkage), if problem.offset_is_free() { base } else { 0.0 });
     let positions = TimedPathFit::new(problem, setting)?.attached(&design)?;
+    let distance = |j: usize, deg: f64| {
+        let joints = linkage.position_with(deg.to_radians(), linkage.assembly()).joints();
+        joints.map_or(f64::INFINITY, |joints| (joints.coupler_point - task.points()[j]).norm())
+    };
+    let refined = |j: usize, deg: f64| {
+        let (mut low, mut high) = (deg - BESIDE_SAMPLE_DEG, deg + BESIDE_SAMPLE_DEG);
+        for _ in 0..100 {
+            let third = (high - low) / 3.0;
+            match distance(j, low + third) <= distance(j, high - third) {
+                true => high -= third,
+                false => low += third,
+            }
+        }
+        let middle = 0.5 * (low + high);
+        if distance(j, middle) <= distance(j, deg) { middle } else { deg }
+    };
     let all = positions.iter().zip(written).enumerate().map(|(j, ([e, _], deg))| {
         let guess = base.to_degrees() + direction * deg;
-        if task.is_untimed(j) { guess + wrapped(e.arg() - guess.to_radians()).to_degrees() } else { guess }
+        if task.is_untimed(j) {
+            refined(j, guess + wrapped(e.arg() - guess.to_radians()).to_degrees())
+        } else {
+            guess
+        }
     });
     Some((all.collect(), vec![linkage.assembly(); task.len()]))
 }

@@ -6,8 +6,8 @@
 
 use super::Context;
 use super::constants::polish::{
-    BASINS, EVALUATIONS, HOP, HOPPED, HOPS, INSIDE, LEAST_BASINS, MAX_HOPS, QUIET_HOPS, SAME_DEVIATION,
-    SAME_START, SHARE, STEPS,
+    BASINS, EVALUATIONS, FUNCTION_BASINS, FUNCTION_HOPPED, HOP, HOPPED, HOPS, INSIDE, LEAST_BASINS, MAX_HOPS,
+    QUIET_HOPS, SAME_DEVIATION, SAME_START, SHARE, STEPS,
 };
 use super::multistart::{Fitted, by_merit, fit_and_judge};
 use crate::judge::error::structural_error;
@@ -212,6 +212,10 @@ pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &m
         return;
     }
     let deviation = problem.spec().solve.objective == Objective::MaxDeviation;
+    let (basins, hopped, quiet_hops) = match problem.is_function() {
+        true => (FUNCTION_BASINS, FUNCTION_HOPPED, 1),
+        false => (BASINS, HOPPED, QUIET_HOPS),
+    };
     let toleranced = problem.task().has_tolerances();
     let worth: Vec<Candidate> = if deviation || toleranced {
         // Unless the largest deviation is the objective, an accepted candidate has no more to gain.
@@ -224,7 +228,7 @@ pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &m
             }
         }
         let all = if promising.is_empty() { found.iter().collect() } else { promising };
-        optima(problem, &all).into_iter().take(BASINS).cloned().collect()
+        optima(problem, &all).into_iter().take(basins).cloned().collect()
     } else {
         let mut held: Vec<Candidate> = found.iter().filter(|c| c.accepted && held(c)).cloned().collect();
         held.sort_by(|one, other| compare(problem, one, other));
@@ -248,12 +252,12 @@ pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &m
         }
         quiet = if least < best * (1.0 - SAME_DEVIATION) { 0 } else { quiet + 1 };
         best = best.min(least);
-        if quiet >= QUIET_HOPS {
+        if quiet >= quiet_hops {
             return;
         }
         let mut draws = stream(problem.spec().solve.seed, FIRST_HOP + hop);
         let mut starts = Vec::new();
-        for (_, candidate) in near.into_iter().take(HOPPED) {
+        for (_, candidate) in near.into_iter().take(hopped) {
             let Some(start) = start_at(problem, candidate) else { continue };
             // The last start is the candidate itself, with the curvature estimate reset.
             for _ in 1..HOPS {

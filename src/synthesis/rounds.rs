@@ -4,7 +4,7 @@
 //! angles.
 
 use super::belief::{ROUND_HITS, SAME_OPTIMUM};
-use super::constants::rounds::{BATCH, FUNCTION_BATCH, KEPT, LEAST_BATCHES, QUIET_BATCHES};
+use super::constants::rounds::{BATCH, FUNCTION_BATCH, FUNCTION_HITS, KEPT, LEAST_BATCHES, QUIET_BATCHES};
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
 use super::family::{climb, freedom};
 use super::multistart::{RoundOutcome, round};
@@ -20,6 +20,8 @@ struct Rounds<'a> {
     exact: f64,
     /// Rounds of a batch.
     batch: u64,
+    /// Rounds that have to reach the best answer.
+    hits: usize,
     /// The number of free parameters that are left when all targets are met.
     freedom: usize,
     at: RoundsState,
@@ -35,6 +37,7 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
         starts: Starts::new(problem),
         exact: exact_cost(problem),
         batch: if is_function { FUNCTION_BATCH } else { BATCH },
+        hits: if is_function { FUNCTION_HITS } else { ROUND_HITS },
         freedom: if is_function { freedom(problem) } else { 0 },
         at: earlier.unwrap_or_default(),
     };
@@ -87,7 +90,7 @@ impl Strategy for Rounds<'_> {
             draws,
             best: best.as_ref(),
             nearest: found.first(),
-            hits: best.as_ref().map(|_| HitsSoFar { came: hits, wanted: ROUND_HITS }),
+            hits: best.as_ref().map(|_| HitsSoFar { came: hits, wanted: self.hits }),
             is_cut: false,
         }
     }
@@ -116,7 +119,7 @@ impl Strategy for Rounds<'_> {
     fn is_done(&mut self, context: Context<'_>) -> bool {
         let at = &mut self.at;
         let wanted = context.problem.spec().solve.candidates;
-        at.hits >= ROUND_HITS
+        at.hits >= self.hits
             && at.batch >= LEAST_BATCHES
             && are_enough(context, &at.found, wanted, (&mut at.known, &mut at.quiet), QUIET_BATCHES)
     }

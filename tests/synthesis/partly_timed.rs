@@ -106,8 +106,7 @@ fn a_linkage_by_itself_is_measured_at_the_timed_angles_and_nearest_between_them(
     let best = solved(spec).candidates.remove(0);
     let (crank_deg, _) = nearest_positions(&problem, &best.linkage).expect("it closes");
     for (has, found) in best.crank_deg.iter().zip(&crank_deg) {
-        // To a sample between the neighbours where the angle is free.
-        assert!((has - found).abs() < 6.0, "{has} {found}");
+        assert!((has - found).abs() < 1e-3, "{has} {found}");
     }
 }
 
