@@ -110,7 +110,7 @@ pub(super) fn charts(canvas: &mut Canvas, record: &Record, candidate: &Candidate
     }
     let pairs = pairs(task, candidate);
     let (low, high) = inputs(&pairs);
-    if !(high > low) {
+    if high.partial_cmp(&low) != Some(std::cmp::Ordering::Greater) {
         return None;
     }
     let spots = |of: &dyn Fn(&GeneratedPair) -> Option<f64>| -> Vec<Vec<(f64, f64)>> {

@@ -222,9 +222,9 @@ fn sensitivity_of(
 /// Removes the mean of each column: the part that the offset of outputs compensates.
 fn without_mean(rows: &mut [([Complex; 10], Complex)]) {
     let n = rows.len().max(1) as f64;
-    let sum = |of: &dyn Fn(&([Complex; 10], Complex)) -> Complex| rows.iter().map(of).sum::<Complex>() / n;
-    let means: [Complex; 10] = std::array::from_fn(|k| sum(&|(row, _)| row[k]));
-    let mean_by_crank = sum(&|(_, by_crank)| *by_crank);
+    let means: [Complex; 10] =
+        std::array::from_fn(|k| rows.iter().map(|(row, _)| row[k]).sum::<Complex>() / n);
+    let mean_by_crank = rows.iter().map(|(_, by_crank)| by_crank).sum::<Complex>() / n;
     for (row, by_crank) in rows.iter_mut() {
         row.iter_mut().zip(means).for_each(|(shift, mean)| *shift -= mean);
         *by_crank -= mean_by_crank;
