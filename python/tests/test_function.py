@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 from test_linkages import textbook
@@ -12,7 +14,7 @@ INPUTS = [0, 15, 30, 45, 60, 75, 90]
 OUTPUTS = [0, 2, 8, 18, 31, 48, 67]
 
 
-def turned_deg(best: lw.Candidate, inputs: list[float]) -> np.ndarray:
+def turned_deg(best: lw.Candidate, inputs: Sequence[float]) -> np.ndarray:
     """How far the follower turns from its angle at an output of 0, in the sense of the outputs, by :func:`textbook`."""
     linkage = best.linkage
     ground = np.degrees(np.arctan2(linkage.B[1] - linkage.A[1], linkage.B[0] - linkage.A[0]))
