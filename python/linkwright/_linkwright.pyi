@@ -86,7 +86,7 @@ class Problem:
         """Every key with its default filled in."""
     @property
     def best_known_objective(self) -> float | None:
-        """The least objective known, of a motion that states it."""
+        """The least objective known, of a motion or a function that states it."""
     @property
     def best_known_sum_sq(self) -> float | None:
         """The least sum of squares known, of a problem that states it."""
@@ -100,7 +100,7 @@ class Problem:
     def text(self) -> str:
         """The text of its file."""
     def points(self) -> list[list[float]]:
-        """Returns the points of the target."""
+        """Returns the points of the target; none of a function."""
     def __reduce__(self) -> tuple[Callable[..., Problem], tuple[str]]: ...
 
 @final
