@@ -46,12 +46,16 @@ pub struct AngleError {
 
 impl AngleError {
     /// Returns the errors of a link in directions `lines` (radians), one a target, whose angles count from `frame`; without a
-    /// frame, so that the weighted sum of squares is least. Of two senses that are allowed it is the one of the lesser sum.
+    /// frame, so that the weighted sum of squares is least. Of two senses that are allowed it is the one of the lesser weighted sum of squares.
     fn of(body: &Body, weights: &[f64], lines: &[f64], frame: Option<f64>) -> AngleError {
         let with = |sign: &f64| AngleError::with(body, (weights, *sign), lines, frame);
+        let sum = |error: &AngleError| {
+            let each = error.structural.iter().zip(weights);
+            each.map(|(error, weight)| weight * error.unwrap_or(0.0).powi(2)).sum::<f64>()
+        };
         let all = body.signs().iter().map(with);
         // Of equal ones the first.
-        let least = all.reduce(|one, other| if other.rms < one.rms { other } else { one });
+        let least = all.reduce(|one, other| if sum(&other) < sum(&one) { other } else { one });
         least.unwrap_or_else(|| with(&1.0))
     }
 

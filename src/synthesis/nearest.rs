@@ -191,6 +191,8 @@ fn prescribed(
     let angles = |direction: f64, base_deg: f64| -> Vec<f64> {
         written.iter().map(|deg| base_deg + direction * deg).collect()
     };
+    // The inputs of a function run as they are written, whichever way its outputs count.
+    let directions = if problem.is_function() { &[1.0] } else { problem.directions() };
     let sum = |direction: f64, base_deg: f64| {
         let radians: Vec<f64> = angles(direction, base_deg).iter().map(|d| d.to_radians()).collect();
         problem.task().errors(linkage, &radians, &assemblies, None).map_or(f64::INFINITY, |e| e.objective)
@@ -205,7 +207,7 @@ fn prescribed(
     }
     let step = 360.0 / DEFAULT_SAMPLES as f64;
     let samples = |&direction: &f64| (0..DEFAULT_SAMPLES).map(move |i| (direction, step * i as f64));
-    let all = problem.directions().iter().flat_map(samples);
+    let all = directions.iter().flat_map(samples);
     let measured = all.map(|(direction, offset)| (sum(direction, offset), direction, offset));
     let (least, direction, offset) = measured.min_by(|one, other| one.0.total_cmp(&other.0))?;
     let (mut low, mut high) = (offset - step, offset + step);

@@ -147,6 +147,9 @@ fn of_csv(read: Result<points_file::PointsFile, Box<Diagnostic>>) {
             file.warnings.iter().for_each(shown);
             let n = file.points.len();
             assert!(n > 0 && n <= points_file::MAX_POINTS && file.rows.len() == n);
+            for column in [&file.crank_deg, &file.angle_deg].into_iter().flatten() {
+                assert!(column.len() == n && column.iter().flatten().all(|v| v.is_finite()));
+            }
             let columns = [&file.weight, &file.tolerance, &file.tolerance_deg];
             for column in columns.into_iter().flatten() {
                 assert!(column.len() == n && column.iter().all(|v| v.is_finite()));

@@ -3,11 +3,13 @@
 
 use crate::common::parse;
 use crate::motion::{ALONE, assert_mostly_small, solved, wrapped};
+use linkwright::internals::judge::assess::assess;
 use linkwright::internals::judge::practicality::sensitivity::{At, Crank, output_sensitivity};
 use linkwright::internals::judge::rank::is_exact;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
 use linkwright::internals::numbers::optimise::levenberg_marquardt::derivative_error;
+use linkwright::internals::synthesis::nearest::nearest_positions;
 use linkwright::internals::task::forms::design_space::Shape;
 use linkwright::internals::task::forms::timed::FunctionFit;
 use linkwright::internals::task::{Sense, Setting};
@@ -320,6 +322,37 @@ fn tolerances_of_outputs_are_kept_one_by_one() {
     assert_true(&beyond);
     let nearest = &beyond.candidates[0];
     assert!(!nearest.accepted && (nearest.error.max - 0.190_129_9).abs() < 1e-6, "{}", nearest.error.max);
+}
+
+#[test]
+fn a_linkage_by_itself_is_measured_in_its_own_sense_and_no_record_may_run_its_inputs_back() {
+    for (outputs, sense) in
+        [([0.0, 5.0, 12.0, 22.0, 37.0], Sense::Same), ([0.0, 4.0, 11.0, 23.0, 36.0], Sense::Opposite)]
+    {
+        let name = if sense == Sense::Same { "same" } else { "opposite" };
+        let of = |sense: &str| {
+            let text = format!(
+                "format = 1\n[task.function]\ninput_deg = [0, 20, 40, 60, 80]\noutput_deg = {outputs:?}\nsense = \"{sense}\"\n\
+                 [require]\ntransmission_deg_min = 30\n{ALONE}"
+            );
+            parse(&text).spec
+        };
+        let mut record = solved(of(name));
+        let best = record.candidates[0].clone();
+        // Nothing is said of the sense: it is found.
+        let problem = Problem::new(of("any")).expect("a problem");
+        let (crank_deg, t1_at) = nearest_positions(&problem, &best.linkage).expect("it closes");
+        let found = assess(&problem, &best.linkage, &crank_deg, &t1_at).expect("it closes");
+        assert_eq!(found.sense, Some(sense));
+        assert!((found.error.rms - best.error.rms).abs() < 1e-6, "{} {}", found.error.rms, best.error.rms);
+        for (has, own) in crank_deg.iter().zip(&best.crank_deg) {
+            assert!(wrapped((has - own).to_radians()).abs() < 1e-4, "{has} {own}");
+        }
+        let ends = best.crank_deg[0] + best.crank_deg[4];
+        record.candidates[0].crank_deg.iter_mut().for_each(|deg| *deg = ends - *deg);
+        let mismatches = verify(&record).expect("a record");
+        assert!(mismatches.iter().any(|m| m.to_string().contains("crank_deg")), "{mismatches:?}");
+    }
 }
 
 #[test]

@@ -72,7 +72,11 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
     }
     let file = problem_file::load(path, &[])?;
     let target = &file.spec.task;
-    let timing = if target.timing.is_some() { "prescribed" } else { "free" };
+    let timing = match &target.timing {
+        None => "free",
+        Some(timing) if timing.free.is_empty() => "prescribed",
+        Some(_) => "partly prescribed",
+    };
     let angles = target.body.as_ref().map(|body| &body.angle_deg[..]);
     let counted = match target.is_function() {
         true => counted(target.len(), "pair"),

@@ -70,8 +70,6 @@ pub(super) fn motion_of(
             Some(list)
         }
     };
-    let tolerance = unless_exact(tolerance, ANY_SIZES * size);
-    let tolerance_deg = unless_exact(tolerance_deg, ANY_DEG);
     let weight = lists.weights(motion.weight.as_deref().map(numbers), weight)?;
     let timing = lists.timing(motion.timing.as_ref(), crank_deg)?;
     let angle_weight = match motion.angle_weight {
@@ -86,6 +84,9 @@ pub(super) fn motion_of(
             size
         }
     };
+    // A body that only turns has the size of its angles.
+    let tolerance = unless_exact(tolerance, ANY_SIZES * if size > 0.0 { size } else { angle_weight });
+    let tolerance_deg = unless_exact(tolerance_deg, ANY_DEG);
     let body = Some(BodySpec { angle_deg, angle_weight, tolerance_deg });
     let points = std::mem::take(&mut target.points);
     let closed = target.closed;

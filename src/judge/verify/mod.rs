@@ -398,6 +398,7 @@ impl Comparison<'_> {
             off(1.0).max(wrapped((first - (written_first + ground)).to_radians()).to_degrees().abs())
         };
         let worst = match offset {
+            AngleOffset::Free if task.is_function() => off(1.0),
             AngleOffset::Free => off(1.0).min(off(-1.0)),
             AngleOffset::Fixed => off_base(0.0),
             AngleOffset::Ground => off_base(linkage.ground_angle().to_degrees()),
