@@ -102,7 +102,7 @@ impl Target {
             target_name: self.name.clone(),
             target: path.points.clone(),
             pairs: path.pairs(),
-            noun: path.noun(),
+            kind: path.kind(),
             body: path.body.clone(),
             unit: self.unit.or(unit),
             measure: self.problem.spec().measure(),

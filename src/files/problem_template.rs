@@ -4,6 +4,7 @@
 use crate::files::name;
 use crate::files::name::NameError;
 use crate::files::problem_file::is_drawing;
+use crate::task::TaskKind;
 use crate::task::requirement::RequirementKind;
 use std::path::Path;
 
@@ -53,28 +54,17 @@ tolerance_deg = 1               # the largest error of the output; remove to tak
 # weight = [1, 1, 1, 1, 1, 1, 5]  # one a pair: the last counts five times
 ";
 
-/// The task of a template.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TemplateTask {
-    /// A path to trace.
-    Path,
-    /// Poses that a body is to pass.
-    Motion,
-    /// Angles that the follower is to have.
-    Function,
-}
-
-/// Returns the text of a problem file called `name` for a task, with sample targets or with those of a CSV file or, for a
+/// Returns the text of a problem file called `name` for a kind of task, with sample targets or with those of a CSV file or, for a
 /// path, of an SVG drawing (according to the name's ending) in the same folder.
 ///
 /// # Errors
 /// [`NameError`] if the name is not valid.
-pub fn problem_template(name: &str, task: TemplateTask, from: Option<&str>) -> Result<String, NameError> {
+pub fn problem_template(name: &str, kind: TaskKind, from: Option<&str>) -> Result<String, NameError> {
     name::check(name)?;
-    match task {
-        TemplateTask::Path => Ok(path_template(name, from)),
-        TemplateTask::Motion => Ok(motion_template(name, from)),
-        TemplateTask::Function => Ok(function_template(name, from)),
+    match kind {
+        TaskKind::Path => Ok(path_template(name, from)),
+        TaskKind::Motion => Ok(motion_template(name, from)),
+        TaskKind::Function => Ok(function_template(name, from)),
     }
 }
 

@@ -8,11 +8,12 @@
 
 use super::rank::is_exact;
 use super::warm::start_at;
-use crate::mechanism::{Complex, turned};
+use crate::mechanism::four_bar::gradient::ground_gradient;
+use crate::mechanism::unit_vector;
 use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, PointBlock};
 use crate::record::{Candidate, Family};
 use crate::task::Problem;
-use crate::task::forms::design_space::{DESIGN, Derived, Design, DesignSpace, SHAPE, Shape, unit};
+use crate::task::forms::design_space::{DESIGN, Derived, Design, DesignSpace, SHAPE, Shape};
 use crate::task::forms::fits::{FitUser, on_fit, own_frame};
 use crate::task::forms::torus::Positions;
 use nalgebra::{DMatrix, SMatrix};
@@ -106,18 +107,20 @@ fn rank(space: &DesignSpace, shape: &Shape, rows: &[[f64; DESIGN]], free: &[usiz
 /// Returns the derivative of a quantity by (Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y).
 fn gradient(quantity: Derived, shape: &Shape) -> [f64; SHAPE] {
     let mut row = [0.0; SHAPE];
-    let ground = shape.follower_pivot - shape.crank_pivot;
-    let along = unit(ground);
-    let mut pivots = |by: Complex| row[..4].copy_from_slice(&[-by.re, -by.im, by.re, by.im]);
     match quantity {
-        Derived::Ground => pivots(along),
-        Derived::GroundAngle => pivots(turned(along) / ground.norm().max(f64::MIN_POSITIVE)),
+        Derived::Ground => {
+            let along = unit_vector(shape.follower_pivot - shape.crank_pivot);
+            row[..4].copy_from_slice(&[-along.re, -along.im, along.re, along.im]);
+        }
+        Derived::GroundAngle => {
+            row[..4].copy_from_slice(&ground_gradient(shape.crank_pivot, shape.follower_pivot));
+        }
         Derived::CrankSide => {
-            let side = unit(shape.offset);
+            let side = unit_vector(shape.offset);
             (row[7], row[8]) = (side.re, side.im);
         }
         Derived::FollowerSide => {
-            let side = unit(shape.offset - shape.coupler);
+            let side = unit_vector(shape.offset - shape.coupler);
             (row[5], row[7], row[8]) = (-side.re, side.re, side.im);
         }
     }

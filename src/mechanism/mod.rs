@@ -21,7 +21,8 @@ pub mod plates;
 mod unit;
 
 pub use crate::numbers::arithmetic::{
-    Complex, bounding_box, cross, dot, least_and_greatest, length, nearest_share, point, turned, xy,
+    Complex, bounding_box, cross, dot, least_and_greatest, length, nearest_share, point, turned, unit_vector,
+    xy,
 };
 pub use any::Linkage;
 pub use chain::{Chain, ChainBuilder};

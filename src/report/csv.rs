@@ -8,7 +8,7 @@ use super::words;
 use crate::mechanism::four_bar::transmission::angle_opposite;
 use crate::mechanism::{Complex, CouplerCurve, FourBar, Joints};
 use crate::record::{Candidate, Member, Record};
-use crate::task::Defect;
+use crate::task::{Defect, TaskKind};
 
 /// A column of a table: its name, and the value of a row in it.
 pub(super) type Column<Row, Value = String> = (&'static str, fn(&Row) -> Value);
@@ -80,10 +80,10 @@ pub const OUTPUT_ANGLE: &str = "output_deg";
 /// Returns one row for each candidate: every figure and parameter, defects as `order:3 7;branch:2` (points from 0), and
 /// the names of the requirements that are not met. Those of a motion have the errors of the angle too.
 pub fn candidates_csv(record: &Record) -> String {
-    let of_motion: &[Column<Candidate>] = match record.problem.resolved.task.table() {
-        "task.motion" => &OF_MOTION,
-        "task.function" => &OF_FUNCTION,
-        _ => &[],
+    let of_motion: &[Column<Candidate>] = match record.problem.resolved.task.kind() {
+        TaskKind::Motion => &OF_MOTION,
+        TaskKind::Function => &OF_FUNCTION,
+        TaskKind::Path => &[],
     };
     let head = names(&FIGURES).chain(names(of_motion)).chain(names(&PARAMETERS)).chain(["defects", "unmet"]);
     let rows = record.candidates.iter().map(|c| {

@@ -11,6 +11,7 @@ use crate::judge::practicality::sweep::Stretch;
 use crate::judge::practicality::{Closest, Joint, Practicality};
 use crate::mechanism::Unit;
 use crate::mechanism::plates::Link;
+use crate::task::TaskKind;
 
 /// The number of significant digits of lengths and rates.
 const DIGITS: usize = 3;
@@ -38,7 +39,7 @@ pub fn practicality_text(
         Some(distances) => out.push_str(&words.distances(distances, 2.0 * practicality.build.pin_radius)),
         None => out.push_str(OPEN),
     }
-    let moved = if practicality.noun == "pair" { "turns the follower" } else { "moves the path" };
+    let moved = if practicality.kind == TaskKind::Function { "turns the follower" } else { "moves the path" };
     out.push_str(&words.head(&format!("How much a wrong dimension {moved}")));
     match &practicality.sensitivity {
         Some(felt) => out.push_str(&words.sensitivity(felt, practicality, tolerance)),
@@ -190,10 +191,10 @@ impl Words {
     }
 
     fn sensitivity(&self, felt: &Sensitivity, practicality: &Practicality, tolerance: f64) -> String {
-        let at_target = match practicality.noun {
-            "pose" => "at pose",
-            "pair" => "at pair",
-            _ => "at point",
+        let at_target = match practicality.kind {
+            TaskKind::Path => "at point",
+            TaskKind::Motion => "at pose",
+            TaskKind::Function => "at pair",
         };
         let worst = felt.worst_dimension().name;
         let ink = |d: &Dimension| match d.name {
@@ -209,7 +210,7 @@ impl Words {
         ];
         let rows: Vec<&Dimension> = felt.dimensions.iter().chain([&felt.ground]).collect();
         let grid = Grid::of(&rows, if practicality.at_points { &columns } else { &columns[..3] });
-        let mut out = indented(&shift(felt, practicality.noun));
+        let mut out = indented(&shift(felt, practicality.kind));
         out.push_str(&grid.render(self.colour));
         out.push_str(&indented(&self.together(felt, practicality, tolerance)));
         out
@@ -218,13 +219,14 @@ impl Words {
     /// Returns the worst dimension, and the combined effect of all dimensions.
     pub(super) fn together(&self, felt: &Sensitivity, practicality: &Practicality, tolerance: f64) -> String {
         let worst = felt.worst_dimension().name;
-        let (at_points, noun) = (practicality.at_points, practicality.noun);
-        let most = if at_points { format!(" at {noun} {}", felt.worst_at) } else { String::new() };
-        let off = |value: f64| match noun {
-            "pair" => format!("{}°", significant(value, DIGITS)),
-            _ => self.length(value),
+        let (at_points, kind) = (practicality.at_points, practicality.kind);
+        let most = if at_points { format!(" at {} {}", kind.noun(), felt.worst_at) } else { String::new() };
+        let of_function = kind == TaskKind::Function;
+        let off = |value: f64| match of_function {
+            true => format!("{}°", significant(value, DIGITS)),
+            false => self.length(value),
         };
-        let what = if noun == "pair" { "the output" } else { "the path" };
+        let what = if of_function { "the output" } else { "the path" };
         let mut text = format!(
             "The worst dimension is {worst}. With every dimension off by {} (1 sigma, the nine above independent of \
              each other) {what} is off by {} rms, {} where it is most{most} (1 sigma).",
@@ -246,9 +248,9 @@ impl Words {
 }
 
 /// Returns the description of the table of sensitivities.
-pub(super) fn shift(felt: &Sensitivity, noun: &str) -> String {
-    let settled = settles(felt.crank).replace("point", noun);
-    if noun == "pair" {
+pub(super) fn shift(felt: &Sensitivity, kind: TaskKind) -> String {
+    let settled = settles(felt.crank).replace("point", kind.noun());
+    if kind == TaskKind::Function {
         let settled = settled.replace("pairs move", "outputs change");
         return format!(
             "Change of the output, in degrees, for an error of 1 in each dimension alone, {settled}."

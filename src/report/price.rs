@@ -15,7 +15,7 @@ pub(super) fn costs(record: &Record) -> String {
     if best.costs.is_empty() {
         return String::new();
     }
-    let of_motion = record.problem.resolved.task.table() == "task.motion";
+    let of_motion = record.problem.resolved.task.is_motion();
     let with_angles = if of_motion { "; angle errors times angle_weight are part of the rms" } else { "" };
     let mut out = format!("\n  What the limits cost (#{}{with_angles})\n", best.rank);
     for (i, cost) in best.costs.iter().enumerate() {

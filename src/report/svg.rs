@@ -12,6 +12,7 @@ use super::scene::{SAMPLES, Scene, circuits};
 use super::text::{brief, capitalised, clean, shortened, significant, text_width};
 use super::words;
 use crate::record::{Candidate, Record};
+use crate::task::TaskKind;
 use crate::task::spec::{TaskSpec, TransmissionOver};
 
 const WIDTH: f64 = 900.0;
@@ -135,14 +136,14 @@ fn enlarged(
 
 /// Draws the legend of the marks, from the right.
 fn legend(canvas: &mut Canvas, y: f64, with_curve: bool, task: &TaskSpec) {
-    let (of_motion, of_function) = (task.table() == "task.motion", task.is_function());
+    let (of_motion, of_function) = (task.is_motion(), task.is_function());
     let text = font(12, palette::INK);
     let mut x = WIDTH - MARGIN;
     if with_curve {
-        let curve = match task.table() {
-            "task.motion" => "curve of its point",
-            "task.function" => "way of the follower's pin",
-            _ => "coupler curve",
+        let curve = match task.kind() {
+            TaskKind::Motion => "curve of its point",
+            TaskKind::Function => "way of the follower's pin",
+            TaskKind::Path => "coupler curve",
         };
         x -= text_width(curve, 12.0);
         canvas.text(Spot::new(x, y), Anchor::Start, &text, curve);

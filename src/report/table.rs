@@ -10,7 +10,7 @@ use crate::mechanism::FourBar;
 use crate::mechanism::Unit;
 use crate::record::{AngleErrorRecord, Candidate, ErrorRecord, Record};
 use crate::task::spec::{Measure, TaskSpec};
-use crate::task::{Defect, Sense};
+use crate::task::{Defect, Sense, TaskKind};
 
 /// The largest number of candidates whose distances from the given points are stated.
 const RAW_NAMED: usize = 3;
@@ -23,10 +23,10 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
     if record.candidates.is_empty() {
         out.push_str("  No candidate was found.\n");
     } else {
-        out.push_str(&match record.problem.resolved.task.table() {
-            "task.motion" => rows_of_motion(record, colour),
-            "task.function" => rows_of_function(record, colour),
-            _ => rows(record, colour),
+        out.push_str(&match record.problem.resolved.task.kind() {
+            TaskKind::Motion => rows_of_motion(record, colour),
+            TaskKind::Function => rows_of_function(record, colour),
+            TaskKind::Path => rows(record, colour),
         });
         out.push_str(&notes(record));
         out.push_str(&beside::lines(record));

@@ -6,7 +6,7 @@ use crate::mechanism::Unit;
 use crate::record::{Candidate, Figure, Pick, Reason, Record, Requirement};
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::{BodySpec, Measure, TaskSpec, TransmissionOver};
-use crate::task::{AngleOffset, Defect, Sense};
+use crate::task::{AngleOffset, Defect, Sense, TaskKind};
 
 /// An objection: one reason why a candidate is not accepted.
 pub(super) struct Objection {
@@ -240,16 +240,16 @@ pub(super) fn error_unit(record: &Record) -> String {
     if record.problem.resolved.task.is_function() { "°".to_owned() } else { unit_suffix(record) }
 }
 
-/// Returns the objective if it is not the plain sum of squares: the heading of its column and a sentence on it. `noun` is
-/// the word for a target, `unit` follows lengths.
+/// Returns the objective if it is not the plain sum of squares: the heading of its column and a sentence on it. `unit`
+/// follows lengths.
 pub(super) fn minimised(
     measure: Measure,
-    (body, noun): (Option<&BodySpec>, &str),
+    (kind, body): (TaskKind, Option<&BodySpec>),
     unit: &str,
 ) -> Option<(&'static str, String)> {
-    let Some(body) = body.filter(|_| noun != "pair") else {
+    let Some(body) = body.filter(|_| kind == TaskKind::Motion) else {
         let (head, sentence) = minimised_in_a_path(measure)?;
-        return Some((head, sentence.replace("point", noun)));
+        return Some((head, sentence.replace("point", kind.noun())));
     };
     let weight = format!("angle_weight = {}{unit}", brief(body.angle_weight, 4));
     let sum = |each: &str| {
@@ -282,7 +282,7 @@ pub(super) fn minimised(
 /// Returns the objective of a record as [`minimised`] does.
 pub(super) fn minimised_in(record: &Record) -> Option<(&'static str, String)> {
     let spec = &record.problem.resolved;
-    minimised(spec.measure(), (spec.task.body.as_ref(), spec.task.noun()), &unit_suffix(record))
+    minimised(spec.measure(), (spec.task.kind(), spec.task.body.as_ref()), &unit_suffix(record))
 }
 
 fn minimised_in_a_path(measure: Measure) -> Option<(&'static str, &'static str)> {
@@ -346,7 +346,7 @@ pub(super) fn fewer(record: &Record) -> Option<String> {
     let accepted = record.candidates.iter().any(|c| c.accepted);
     let mut text = format!("{listed} of the {asked} candidates that were asked for: ");
     let task = &record.problem.resolved.task;
-    let (is_motion, is_function) = (task.table() == "task.motion", task.is_function());
+    let (is_motion, is_function) = (task.is_motion(), task.is_function());
     text.push_str(match (record.method.used == ["continuation"], accepted) {
         (false, true) if is_function => {
             "whatever else the search judged is one of these again, or is not accepted."

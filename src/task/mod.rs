@@ -5,6 +5,7 @@
 //! | [`builder`] | a builder of problems from points, with the defaults of a problem file |
 //! | [`defect`] | defects of a motion through target points: order, branch, circuit |
 //! | [`forms`] | the task as mathematics: design space, residuals with derivatives, requirements, fitness |
+//! | `kind` | the kinds of tasks, with their words |
 //! | `limits` | intervals in which the parameters of a design lie |
 //! | [`problem`] | a checked `ProblemSpec`, and the discrete choices of a search besides the design vector (`Setting`) |
 //! | [`region`] | regions of the plane: a box along the axes, or a polygon |
@@ -18,6 +19,7 @@
 mod builder;
 pub mod defect;
 pub mod forms;
+mod kind;
 mod limits;
 pub mod problem;
 pub mod region;
@@ -31,6 +33,7 @@ pub(crate) mod values;
 
 pub use builder::ProblemBuilder;
 pub use defect::Defect;
+pub use kind::TaskKind;
 pub use problem::{Problem, Setting};
 pub(crate) use targets::corners;
 pub use targets::{

@@ -5,7 +5,7 @@
 //! places: its targets are angles of the follower at given crank angles.
 
 use crate::task::resampling::{resample, smooth};
-use crate::task::{AngleOffset, Body, Link, Sense, Task, TaskError, TaskOptions, Timing};
+use crate::task::{AngleOffset, Body, Link, Sense, Task, TaskError, TaskKind, TaskOptions, Timing};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -28,11 +28,11 @@ pub struct TaskSpec {
     pub raw: Option<RawPoints>,
     /// The angles of a body, or of the follower in a function; absent: the places alone are wanted.
     pub body: Option<BodySpec>,
-    /// What the angles of a function's outputs mean; absent: the angles are those of a body on the coupler.
+    /// The reference and the sense of a function's outputs; absent: the angles are those of a body on the coupler.
     pub output: Option<OutputSpec>,
 }
 
-/// What the output angles of a function mean.
+/// The reference and the sense of the output angles of a function, and the formula that gave them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputSpec {
     /// Their reference: free, or the ground line.
@@ -168,9 +168,28 @@ impl TaskSpec {
         Task::new(self.points.clone(), timing, options)
     }
 
+    /// Returns its kind.
+    pub fn kind(&self) -> TaskKind {
+        match (&self.body, &self.output) {
+            (None, _) => TaskKind::Path,
+            (Some(_), None) => TaskKind::Motion,
+            (Some(_), Some(_)) => TaskKind::Function,
+        }
+    }
+
+    /// Returns whether it is a motion.
+    pub fn is_motion(&self) -> bool {
+        self.kind() == TaskKind::Motion
+    }
+
     /// Returns whether it is a function.
     pub fn is_function(&self) -> bool {
-        self.output.is_some()
+        self.kind() == TaskKind::Function
+    }
+
+    /// Returns the word for one of its targets: `point`, `pose` or `pair`.
+    pub fn noun(&self) -> &'static str {
+        self.kind().noun()
     }
 
     /// Returns the input and the output of each pair of a function, degrees; none of another task.
@@ -191,30 +210,6 @@ impl TaskSpec {
     /// Returns whether there are no targets.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
-    }
-
-    /// Returns the one of three that suits a path, a motion or a function.
-    fn by_kind<T>(&self, path: T, motion: T, function: T) -> T {
-        match (&self.body, &self.output) {
-            (None, _) => path,
-            (Some(_), None) => motion,
-            (Some(_), Some(_)) => function,
-        }
-    }
-
-    /// Returns the name of its table in a file: `task.path`, `task.motion` or `task.function`.
-    pub fn table(&self) -> &'static str {
-        self.by_kind("task.path", "task.motion", "task.function")
-    }
-
-    /// Returns the word for one of its targets: `point`, `pose` or `pair`.
-    pub fn noun(&self) -> &'static str {
-        self.by_kind("point", "pose", "pair")
-    }
-
-    /// Returns the key of its list of targets in a file, such as `task.path.points`.
-    pub fn list_key(&self) -> &'static str {
-        self.by_kind("task.path.points", "task.motion.poses", "task.function.output_deg")
     }
 }
 

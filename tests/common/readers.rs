@@ -253,7 +253,7 @@ pub fn entry(label: &str, record: &Record, index: usize) -> Option<Entry> {
         target_name: record.problem.name.clone(),
         target: path.points.clone(),
         pairs: path.pairs(),
-        noun: path.noun(),
+        kind: path.kind(),
         body: path.body.clone(),
         unit: record.problem.unit,
         measure: record.problem.resolved.measure(),

@@ -1,11 +1,12 @@
 //! What good files mean: defaults, overrides, habits of spreadsheets, round trips.
 
-use linkwright::internals::files::problem_template::{TemplateTask, problem_template};
+use linkwright::internals::files::problem_template::problem_template;
 use linkwright::internals::files::schema::{SchemaKind, schema};
 use linkwright::internals::files::{linkage_file, points_file, problem_file};
 use linkwright::internals::mechanism::Unit;
 use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, LinkageType, NaturalCoordinates};
 use linkwright::internals::task::AngleOffset;
+use linkwright::internals::task::TaskKind;
 use linkwright::internals::task::spec::{Limits, Method, RequireSpec, SolveSpec};
 use proptest::prelude::*;
 
@@ -381,7 +382,7 @@ fn a_drawing_is_a_target_of_a_problem_and_by_itself() {
     let bare = problem_file::load_any(&svg, &[]).unwrap();
     assert_eq!((bare.name.as_str(), bare.unit, bare.warnings.len()), ("ring", Some(Unit::Mm), 1));
     assert!(bare.spec.task.closed && bare.spec.task.points.len() == 60);
-    let text = problem_template("my ring", TemplateTask::Path, Some("ring.svg")).unwrap();
+    let text = problem_template("my ring", TaskKind::Path, Some("ring.svg")).unwrap();
     let named =
         problem_file::parse("r.toml", &text, Some(folder.path()), &[]).unwrap_or_else(|d| panic!("{d}"));
     assert_eq!(named.spec.task, bare.spec.task);
@@ -399,7 +400,7 @@ fn a_drawing_is_a_target_of_a_problem_and_by_itself() {
 
 #[test]
 fn the_template_runs_as_it_is() {
-    let text = problem_template("my arm", TemplateTask::Path, None).unwrap();
+    let text = problem_template("my arm", TaskKind::Path, None).unwrap();
     let file = problem_file::parse("arm.toml", &text, None, &[]).unwrap_or_else(|d| panic!("{d}"));
     assert_eq!(file.name, "my arm");
     assert!(file.warnings.is_empty() && file.spec.task.closed);
@@ -407,16 +408,16 @@ fn the_template_runs_as_it_is() {
 
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("p \"1\".csv"), "x,y\n0,0\n3,4\n").unwrap();
-    let text = problem_template("arm", TemplateTask::Path, Some("p \"1\".csv")).unwrap();
+    let text = problem_template("arm", TaskKind::Path, Some("p \"1\".csv")).unwrap();
     let file =
         problem_file::parse("arm.toml", &text, Some(folder.path()), &[]).unwrap_or_else(|d| panic!("{d}"));
     assert_eq!(file.spec.task.points.len(), 2);
-    assert!(problem_template("../arm", TemplateTask::Path, None).is_err());
+    assert!(problem_template("../arm", TaskKind::Path, None).is_err());
 }
 
 #[test]
 fn every_commented_key_of_the_template_works() {
-    let text = problem_template("arm", TemplateTask::Path, None).unwrap();
+    let text = problem_template("arm", TaskKind::Path, None).unwrap();
     let active: String = text
         .lines()
         .map(|line| match line.strip_prefix("# ") {

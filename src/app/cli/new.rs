@@ -7,7 +7,8 @@ use crate::files::diagnostic::quoted;
 use crate::files::generator::FileKind;
 use crate::files::name;
 use crate::files::problem_file::{from_points_file, holds_pairs, holds_poses, is_drawing, parse};
-use crate::files::problem_template::{TemplateTask, problem_template};
+use crate::files::problem_template::problem_template;
+use crate::task::TaskKind;
 use std::path::{Path, PathBuf};
 
 /// Runs the command.
@@ -39,14 +40,14 @@ pub fn run(options: &New) -> Result<Ended, Ended> {
 }
 
 /// Returns the task that is asked for; where it is silent, a file of poses makes a motion.
-fn task_of(options: &New) -> Result<TemplateTask, Ended> {
+fn task_of(options: &New) -> Result<TaskKind, Ended> {
     let from = options.from.as_deref();
     let poses = from.is_some_and(holds_poses);
     let pairs = from.is_some_and(holds_pairs);
     match options.task {
-        None if pairs => Ok(TemplateTask::Function),
+        None if pairs => Ok(TaskKind::Function),
         Some(NewTask::Function) => match from.filter(|path| !pairs && path.exists()) {
-            None => Ok(TemplateTask::Function),
+            None => Ok(TaskKind::Function),
             Some(path) => Err(refuse(format!(
                 "{} has no pairs of a function: write them as a CSV with the columns input_deg,output_deg",
                 quoted(&path.display().to_string())
@@ -55,11 +56,11 @@ fn task_of(options: &New) -> Result<TemplateTask, Ended> {
         Some(NewTask::Path | NewTask::Motion) if pairs => Err(refuse(
             "the file holds pairs of a function (a column input_deg): write --task function, or leave --task out",
         )),
-        Some(NewTask::Path) => Ok(TemplateTask::Path),
-        None if !poses => Ok(TemplateTask::Path),
-        None => Ok(TemplateTask::Motion),
+        Some(NewTask::Path) => Ok(TaskKind::Path),
+        None if !poses => Ok(TaskKind::Path),
+        None => Ok(TaskKind::Motion),
         Some(NewTask::Motion) => match from.filter(|path| !poses && path.is_file()) {
-            None => Ok(TemplateTask::Motion),
+            None => Ok(TaskKind::Motion),
             Some(path) if is_drawing(path) => Err(refuse(format!(
                 "{} is a drawing, which has no angles of a body: write the poses as a CSV with the columns x,y,angle_deg",
                 quoted(&path.display().to_string())

@@ -20,7 +20,7 @@ pub(super) struct Lists<'a> {
 
 impl Lists<'_> {
     fn key(&self, key: &str) -> String {
-        format!("{}.{key}", self.target.table)
+        format!("{}.{key}", self.target.kind.table())
     }
 
     /// Returns a list that is given in the problem file or as a column of the points file; `what` names one of its values.
@@ -40,8 +40,13 @@ impl Lists<'_> {
                 self.toml.refuse(&place, message, "remove one of the two")
             }
             (Some(list), _) if list.len() != n => {
-                let message = format!("{} and {}", counted(n, self.target.one), counted(list.len(), what));
-                self.toml.refuse(&place, message, format!("give one {what} for each {}", self.target.one))
+                let message =
+                    format!("{} and {}", counted(n, self.target.kind.noun()), counted(list.len(), what));
+                self.toml.refuse(
+                    &place,
+                    message,
+                    format!("give one {what} for each {}", self.target.kind.noun()),
+                )
             }
             (here, column) => Ok(here.or(column)),
         }
@@ -73,7 +78,8 @@ impl Lists<'_> {
         let weight = self.list("weight", "weight", here, column)?;
         if let Some((j, w)) = weight.iter().flatten().enumerate().find(|(_, w)| **w <= 0.0) {
             let message = format!("weight = {w}: a weight is positive");
-            let help = format!("write a number above 0; leave the {} out to ignore it", self.target.one);
+            let help =
+                format!("write a number above 0; leave the {} out to ignore it", self.target.kind.noun());
             return self.toml.refuse(&self.key(&format!("weight.{j}")), message, help);
         }
         Ok(weight)
@@ -96,7 +102,8 @@ impl Lists<'_> {
         if crank_deg.is_none() && table.is_some() {
             let help = format!(
                 "add crank_deg, one angle a {}, or remove [{}.timing] for free timing",
-                self.target.one, self.target.table
+                self.target.kind.noun(),
+                self.target.kind.table()
             );
             return self.toml.refuse_key(&self.key("timing"), "the crank angles are missing", help);
         }
@@ -104,7 +111,7 @@ impl Lists<'_> {
         let given = angles.iter().flatten().count();
         if given < 2 {
             let message =
-                format!("{} of {} have a crank angle", given, counted(angles.len(), self.target.one));
+                format!("{} of {} have a crank angle", given, counted(angles.len(), self.target.kind.noun()));
             let help = "give two of them crank angles at least; without any, leave out the timing";
             return self.toml.refuse_key(&self.key("timing.crank_deg"), message, help);
         }

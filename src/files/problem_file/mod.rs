@@ -30,7 +30,6 @@ use crate::files::toml_values::{Count, OnlyTable};
 use crate::mechanism::Unit;
 use crate::numbers::optimise::population::PopulationError;
 use crate::record::ProblemRecord;
-use crate::task::Problem;
 use crate::task::forms::precision;
 use crate::task::forms::precision::precision_points;
 use crate::task::forms::reduced;
@@ -39,6 +38,7 @@ use crate::task::spec::{
     MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, MOST_PICKS_WITHIN, Method, Objective, ProblemSpec,
     RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
+use crate::task::{Problem, TaskKind};
 use raw::{RawSolve, RawTask};
 use std::path::Path;
 use target::Whereabouts;
@@ -244,7 +244,7 @@ pub fn from_points_file(path: &Path, overrides: &[(String, String)]) -> Result<P
     };
     // Keys of a path that are set on the command line ask for a path through the places.
     let asks_for_path = overrides.iter().any(|(key, _)| key.starts_with("task.path."));
-    let text = text_about(file, if asks_for_path { "path" } else { task_of_bare(path) });
+    let text = text_about(file, if asks_for_path { TaskKind::Path } else { kind_of_bare(path) });
     let whereabouts = Whereabouts { folder: Some(folder_of(path)), anywhere: true, beside: &[] };
     parse_at(&shown, &text, &whereabouts, overrides)
 }
@@ -259,23 +259,23 @@ pub fn holds_pairs(path: &Path) -> bool {
     !is_drawing(path) && points_file::holds_pairs(path)
 }
 
-/// Returns the name of the task that a bare target is: a function of pairs, a motion of poses, else a path.
-fn task_of_bare(path: &Path) -> &'static str {
+/// Returns the kind of task that a bare target is: a function of pairs, a motion of poses, else a path.
+fn kind_of_bare(path: &Path) -> TaskKind {
     if holds_pairs(path) {
-        "function"
+        TaskKind::Function
     } else if holds_poses(path) {
-        "motion"
+        TaskKind::Motion
     } else {
-        "path"
+        TaskKind::Path
     }
 }
 
 /// Returns the text of a problem file whose target is a points file, a file of poses or pairs or a drawing and that states
 /// nothing else.
-fn text_about(target: &str, task: &str) -> String {
+fn text_about(target: &str, kind: TaskKind) -> String {
     let key = if is_drawing(Path::new(target)) { "svg" } else { "file" };
     let value = toml::Value::String(target.to_owned());
-    format!("format = {FORMAT}\n[task.{task}]\n{key} = {value}\n")
+    format!("format = {FORMAT}\n[{}]\n{key} = {value}\n", kind.table())
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -363,10 +363,10 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Checked<SolveSpec> {
 
 /// Checks that there is a body, where its pins are to lie in a part of it.
 fn pins_of(toml: &TomlText<'_>, task: &TaskSpec, require: &RequireSpec) -> Checked<()> {
-    if require.pins_in.is_none() || task.table() == "task.motion" {
+    if require.pins_in.is_none() || task.is_motion() {
         return Ok(());
     }
-    let kind = task.table().trim_start_matches("task.");
+    let kind = task.kind().name();
     let help = "remove it, or give the body's poses in [task.motion]; pivots_in is for the fixed pivots";
     toml.refuse("require.pins_in", format!("pins_in is a part of a body, and a {kind} has no body"), help)
 }

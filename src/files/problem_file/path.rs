@@ -130,11 +130,11 @@ fn raw_of(
 fn explain_task(toml: &TomlText<'_>, target: &Target, spec: &TaskSpec, error: &TaskError) -> Box<Diagnostic> {
     Box::new(match error {
         TaskError::TooFewPoints(n) => target
-            .at_all(toml, format!("a {} needs at least 2 {}s, this one has {n}", target.kind, target.one))
-            .with_help(format!("add {}s, in the order in which they are to be passed", target.one)),
+            .at_all(toml, format!("a {} needs at least 2 {}s, this one has {n}", target.kind.name(), target.kind.noun()))
+            .with_help(format!("add {}s, in the order in which they are to be passed", target.kind.noun())),
         TaskError::AdjacentEqual(i) => {
             let [x, y] = spec.points[*i];
-            let message = format!("{}s {} and {} are equal: ({x}, {y})", target.one, i + 1, i + 2);
+            let message = format!("{}s {} and {} are equal: ({x}, {y})", target.kind.noun(), i + 1, i + 2);
             target
                 .at_point(toml, i + 1, message)
                 .with_help("remove one of them, or prescribe the timing: at two crank angles the point dwells there")

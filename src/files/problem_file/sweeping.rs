@@ -2,7 +2,7 @@
 
 use super::raw::RawProblem;
 use super::target::Whereabouts;
-use super::{folder_of, is_bare_target, overrides, task_of_bare, text_about};
+use super::{folder_of, is_bare_target, kind_of_bare, overrides, text_about};
 use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::input_text;
 use crate::files::linkage_file::check_format;
@@ -29,7 +29,7 @@ impl Template {
             return Err(Box::new(diagnostic.with_help("rename the file")));
         };
         let text = if is_bare_target(path) {
-            text_about(&name, task_of_bare(path))
+            text_about(&name, kind_of_bare(path))
         } else {
             input_text::read(path)?
         };

@@ -8,6 +8,7 @@ use crate::files::svg_file;
 use crate::files::svg_file::{SvgOptions, SvgTarget};
 use crate::files::toml_text::TomlText;
 use crate::mechanism::Unit;
+use crate::task::TaskKind;
 use std::path::{Component, Path, PathBuf};
 
 /// The places of the files that a problem file names.
@@ -33,11 +34,8 @@ pub(super) enum Source {
 
 /// Targets with their source.
 pub(super) struct Target {
-    /// The table that they stand in, such as `task.path`.
-    pub table: &'static str,
-    /// The kind of their task, and the word for one of them.
-    pub kind: &'static str,
-    pub one: &'static str,
+    /// The kind of their task.
+    pub kind: TaskKind,
     /// The places; of a function, the input and the output of each pair, degrees.
     pub points: Vec<[f64; 2]>,
     pub source: Source,
@@ -108,8 +106,8 @@ impl Target {
             let help = "add points = [[x, y], ...] or file = \"points.csv\" or svg = \"drawing.svg\"";
             return toml.refuse_key("task.path", "the path has no points", help);
         };
-        let (table, kind, one) = ("task.path", "path", "point");
-        Ok(Target { table, kind, one, points, source, closed, samples, resampled: false })
+        let kind = TaskKind::Path;
+        Ok(Target { kind, points, source, closed, samples, resampled: false })
     }
 
     /// Reads the poses of a motion from its source; the second value holds their angles, `None` where only the place
@@ -119,7 +117,6 @@ impl Target {
         motion: &RawMotion,
         whereabouts: &Whereabouts<'_>,
     ) -> Checked<(Target, Vec<Option<f64>>)> {
-        let (table, kind, one) = ("task.motion", "motion", "pose");
         let (points, angles, source) = match (&motion.poses, &motion.file) {
             (Some(_), Some(_)) => {
                 let message = "two sources of poses: poses and file";
@@ -155,7 +152,8 @@ impl Target {
             }
         };
         let closed = motion.closed.unwrap_or(false);
-        Ok((Target { table, kind, one, points, source, closed, samples: None, resampled: false }, angles))
+        let kind = TaskKind::Motion;
+        Ok((Target { kind, points, source, closed, samples: None, resampled: false }, angles))
     }
 
     /// Reads the pairs of a function from its source.
@@ -204,8 +202,8 @@ impl Target {
                 return toml.refuse_key("task.function", "the function has no pairs", help);
             }
         };
-        let (table, kind, one) = ("task.function", "function", "pair");
-        Ok(Target { table, kind, one, points, source, closed: false, samples: None, resampled: false })
+        let kind = TaskKind::Function;
+        Ok(Target { kind, points, source, closed: false, samples: None, resampled: false })
     }
 
     /// Returns the pairs that the problem file itself gives.
@@ -230,14 +228,6 @@ impl Target {
         Ok(inputs.iter().zip(outputs).map(|(input, output)| [input.0, output.0]).collect())
     }
 
-    /// Returns the key of the list of targets.
-    fn list(&self) -> String {
-        if self.one == "pair" {
-            return format!("{}.output_deg", self.table);
-        }
-        format!("{}.{}s", self.table, self.one)
-    }
-
     /// Returns a diagnostic about a point, at its place.
     pub fn at_point(&self, toml: &TomlText<'_>, index: usize, message: String) -> Diagnostic {
         match &self.source {
@@ -245,7 +235,7 @@ impl Target {
             Source::Csv(csv) => {
                 Diagnostic::new(csv.file.clone(), csv.text.clone(), message).at(csv.rows.get(index).cloned())
             }
-            Source::File => toml.at(&format!("{}.{index}", self.list()), message),
+            Source::File => toml.at(&format!("{}.{index}", self.kind.list_key()), message),
             Source::Svg(_) => self.at_all(toml, message),
         }
     }
@@ -255,7 +245,7 @@ impl Target {
         match &self.source {
             Source::Csv(csv) => Diagnostic::new(csv.file.clone(), csv.text.clone(), message),
             Source::Svg(svg) => Diagnostic::new(svg.file.clone(), "", message),
-            Source::File => toml.at(&self.list(), message),
+            Source::File => toml.at(self.kind.list_key(), message),
         }
     }
 }

@@ -22,8 +22,8 @@
 
 use super::sweep::Sweep;
 use crate::mechanism::effort::POINTS_AT_ONCE;
-use crate::mechanism::four_bar::gradient::{follower_gradient, shape_gradient};
-use crate::mechanism::{AssemblyMode, Complex, FourBar, dot, length, turned};
+use crate::mechanism::four_bar::gradient::{follower_gradient, ground_gradient, shape_gradient};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, dot, length};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
@@ -128,9 +128,7 @@ fn columns(linkage: &FourBar, at: &At, flat: bool) -> Option<([Complex; 9], Comp
 fn output_columns(linkage: &FourBar, at: &At) -> Option<([Complex; 9], Complex)> {
     let frame = linkage.frame(at.crank_angle, at.assembly)?;
     let (mut by_shape, by_crank) = follower_gradient(&frame, linkage.crank(), linkage.follower())?;
-    // d(angle of A -> B) = <i ground, dB - dA> / g
-    let across = turned(Complex::from_polar(1.0, linkage.ground_angle())) / linkage.ground();
-    let by_ground = [-across.re, -across.im, across.re, across.im];
+    let by_ground = ground_gradient(linkage.crank_pivot(), linkage.follower_pivot());
     by_shape.iter_mut().zip(by_ground).for_each(|(by, ground)| *by -= ground);
     let degrees = |radians: f64| Complex::new(radians.to_degrees(), 0.0);
     Some((by_shape.map(degrees), degrees(by_crank)))
@@ -178,11 +176,8 @@ fn sensitivity_of(
         let mut row = [Complex::new(0.0, 0.0); 10];
         row[..9].copy_from_slice(&nine);
         if crank == Crank::TurnsWithGround {
-            // d(angle of A -> B) = <i ground, dB - dA> / g
-            let across = turned(ground) / linkage.ground();
-            for (k, by) in [-across.re, -across.im, across.re, across.im].into_iter().enumerate() {
-                row[k] += by_crank * by;
-            }
+            let by_ground = ground_gradient(linkage.crank_pivot(), linkage.follower_pivot());
+            row.iter_mut().zip(by_ground).for_each(|(shift, by)| *shift += by_crank * by);
         }
         row[9] = row[2] * ground.re + row[3] * ground.im;
         if matches!(crank, Crank::Stays | Crank::TurnsWithGround) {

@@ -10,7 +10,7 @@ use crate::mechanism::FourBar;
 use crate::record::Candidate;
 use crate::task::Problem;
 use crate::task::spec::TransmissionOver;
-use crate::task::{AngleOffset, Timing};
+use crate::task::{AngleOffset, TaskKind, Timing};
 
 /// Number of positions on each stretch of the motion at which the path of a linkage without a target is examined.
 const POSITIONS: usize = 72;
@@ -30,9 +30,8 @@ pub struct Practicality {
     pub sensitivity: Option<Sensitivity>,
     /// Whether the path is examined at a target's points, counted from 0; else all along the motion.
     pub at_points: bool,
-    /// The word for one of the target's points: `point`, or `pose` in a motion, of which the path of the body's origin is
-    /// examined.
-    pub noun: &'static str,
+    /// The kind of the task. Of a motion, the path of the body's origin is examined, of a function the output.
+    pub kind: TaskKind,
 }
 
 impl Practicality {
@@ -51,8 +50,8 @@ impl Practicality {
         let cycle = candidate.transmission_deg.over == TransmissionOver::Cycle;
         let sweep = Sweep::of_motion(&verdict.motion, cycle);
         let felt = sensitivity_of(problem, candidate);
-        let noun = problem.spec().task.noun();
-        Some(Practicality { noun, ..Practicality::of(sweep, build, felt, true) })
+        let kind = problem.spec().task.kind();
+        Some(Practicality { kind, ..Practicality::of(sweep, build, felt, true) })
     }
 
     /// Examines a linkage by itself over its whole motion without passing a toggle ([`Sweep::of_linkage`]), and the
@@ -65,7 +64,7 @@ impl Practicality {
 
     fn of(sweep: Sweep, build: Build, sensitivity: Option<Sensitivity>, at_points: bool) -> Self {
         let (layering, distances) = (layering(&sweep, build), pivot_distances(&sweep));
-        Practicality { sweep, build, layering, distances, sensitivity, at_points, noun: "point" }
+        Practicality { sweep, build, layering, distances, sensitivity, at_points, kind: TaskKind::Path }
     }
 }
 

@@ -9,7 +9,7 @@
 //!
 //! <v, i u> is the sine of the transmission angle: at a toggle there is no gradient, and none is returned.
 
-use crate::mechanism::{AssemblyMode, Complex, FourBar, dot, turned};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, dot, turned, unit_vector};
 
 /// |sin(transmission angle)| at and below which a position counts as a toggle: double precision leaves no
 /// correct digit in a gradient there.
@@ -104,6 +104,15 @@ pub fn follower_gradient(frame: &Frame, crank: f64, follower: f64) -> Option<([f
     let shape =
         [u.re, u.im, -u.re, -u.im, dot(u, e), 1.0, -dot(u, v), 0.0, 0.0].map(|numerator| numerator * per);
     Some((shape, dot(u, turned(e)) * crank * per))
+}
+
+/// Computes the gradient of the direction of the ground line A -> B by Ax, Ay, Bx and By: the columns of <i g, dB - dA> / |AB|,
+/// with the unit vector g along the line.
+#[inline]
+pub fn ground_gradient(crank_pivot: Complex, follower_pivot: Complex) -> [f64; 4] {
+    let ground = follower_pivot - crank_pivot;
+    let across = turned(unit_vector(ground)) / ground.norm().max(f64::MIN_POSITIVE);
+    [-across.re, -across.im, across.re, across.im]
 }
 
 /// Computes dP/dphi alone, the last part of [`shape_gradient`]; `None` at a toggle.

@@ -61,6 +61,13 @@ pub fn turned(z: Complex) -> Complex {
     Complex::new(-z.im, z.re)
 }
 
+/// Returns z / |z|, the unit vector along z; 1, along the x axis, for zero.
+#[inline]
+pub fn unit_vector(z: Complex) -> Complex {
+    let long = length(z);
+    if long > 0.0 { z / long } else { Complex::new(1.0, 0.0) }
+}
+
 /// Returns the share s in [0, 1] for which from + s (to - from) is the point of a segment that is nearest to z; 0 if the
 /// segment is a point.
 #[inline]

@@ -11,6 +11,7 @@ use super::scene::{Bounds, SAMPLES, circuits};
 use super::text::clean;
 use crate::mechanism::Unit;
 use crate::record::Candidate;
+use crate::task::TaskKind;
 use crate::task::spec::{BodySpec, Measure};
 use serde::Serialize;
 use std::cmp::Ordering;
@@ -44,8 +45,8 @@ pub struct Entry {
     pub target: Vec<[f64; 2]>,
     /// The input and the output of each pair of a function, degrees; empty for other tasks.
     pub pairs: Vec<[f64; 2]>,
-    /// The word for one of the targets.
-    pub noun: &'static str,
+    /// The kind of the task whose target it is.
+    pub kind: TaskKind,
     /// The angles of the body at the target in a motion, of the follower in a function.
     pub body: Option<BodySpec>,
     /// The unit of the lengths.
@@ -212,7 +213,9 @@ fn usual_key(entries: &[Entry]) -> SortKey {
         .windows(2)
         .all(|w| w[0].measure == w[1].measure && w[0].unit == w[1].unit && w[0].has_target_of(&w[1]));
     match entries.first() {
-        Some(first) if one && (first.measure != Measure::Sum || first.noun == "pose") => SortKey::Objective,
+        Some(first) if one && (first.measure != Measure::Sum || first.kind == TaskKind::Motion) => {
+            SortKey::Objective
+        }
         _ => SortKey::default(),
     }
 }
@@ -304,15 +307,15 @@ impl Comparison {
     /// Returns the objective, if all rows minimised the same one and it is not the plain sum: the word for its column,
     /// and a sentence on it.
     pub(super) fn minimised(&self) -> Option<(&'static str, String)> {
-        let Entry { measure, body, unit, noun, .. } = &self.rows.first()?.entry;
+        let Entry { measure, body, unit, kind, .. } = &self.rows.first()?.entry;
         let one = self.rows.iter().all(|row| row.entry.measure == *measure) && self.same_target();
         let unit = super::words::length_suffix(*unit);
-        one.then(|| super::words::minimised(*measure, (body.as_ref(), noun), &unit)).flatten()
+        one.then(|| super::words::minimised(*measure, (*kind, body.as_ref()), &unit)).flatten()
     }
 
     /// Returns whether a row is of a motion, so that there are errors of the body's angle.
     pub(super) fn has_angles(&self) -> bool {
-        self.rows.iter().any(|row| row.entry.noun == "pose")
+        self.rows.iter().any(|row| row.entry.kind == TaskKind::Motion)
     }
 
     /// Returns whether every record is true.

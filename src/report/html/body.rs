@@ -49,7 +49,7 @@ const LIVE: PreEscaped<&str> = PreEscaped(
 /// Returns the table of the targets, filled by the script.
 fn points(record: &Record) -> Markup {
     let task = &record.problem.resolved.task;
-    let (noun, of_motion) = (task.noun(), task.table() == "task.motion");
+    let (noun, of_motion) = (task.noun(), task.is_motion());
     let heads = [noun, "crank °", "desired x", "desired y", "generated x", "generated y", "error"];
     let of_angle = ["desired angle °", "generated angle °", "angle error °"];
     let heads = heads.into_iter().chain(of_angle.into_iter().filter(|_| of_motion));

@@ -153,7 +153,7 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         ("defects", false, &|c| Cell::words(defects(c))),
         ("verdict", false, &|c| Cell::verdict(verdict(record, c), c.accepted)),
     ];
-    let (of_motion, of_function) = (task.table() == "task.motion", task.is_function());
+    let (of_motion, of_function) = (task.is_motion(), task.is_function());
     let [crank_from, follower_from] = ["crank from", "follower from"];
     let is_shown = |column: &&Column<&Candidate>| match column.0 {
         name if [angle_rms, angle_max].contains(&name) => of_motion,

@@ -9,7 +9,7 @@
 
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::four_bar::position::Kernel;
-use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, length, point, xy};
+use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, length, xy};
 use crate::task::Task;
 use crate::task::spec::{DEFAULT_REACH, DesignSpec, Limits};
 use std::f64::consts::PI;
@@ -471,10 +471,4 @@ impl DesignSpace {
 /// Returns the pivots of a shape as coordinate pairs.
 pub fn pivots(shape: &Shape) -> [[f64; 2]; 2] {
     [xy(shape.crank_pivot), xy(shape.follower_pivot)]
-}
-
-/// Returns a direction as a unit vector; the x axis for the zero vector.
-pub fn unit(v: Complex) -> Complex {
-    let long = length(v);
-    if long > 0.0 { v / long } else { point([1.0, 0.0]) }
 }

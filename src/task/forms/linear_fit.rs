@@ -12,8 +12,8 @@
 //! If the problem fixes A, B or the ground's direction, some of the six real unknowns are known or dependent: v = T w +
 //! v0 with fewer unknowns w. This makes a start only; the actual fit follows.
 
-use super::design_space::{Shape, unit};
-use crate::mechanism::{Complex, cross};
+use super::design_space::Shape;
+use crate::mechanism::{Complex, cross, unit_vector};
 use crate::task::Problem;
 use crate::task::spec::Limits;
 use nalgebra::{SMatrix, SVector};
@@ -215,7 +215,7 @@ pub fn fit(
         coupler: ratios.coupler * g,
         follower: ratios.follower * g,
         // Z is the offset turned by the ground's direction.
-        offset: z * unit(ground).conj(),
+        offset: z * unit_vector(ground).conj(),
     })
 }
 

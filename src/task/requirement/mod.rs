@@ -107,7 +107,7 @@ impl RequirementKind {
     /// Returns its key in the file of a problem: a tolerance is one of its task's table.
     pub fn key_in(self, spec: &ProblemSpec) -> String {
         match self {
-            Self::Tolerance | Self::ToleranceDeg => format!("{}.{}", spec.task.table(), self.name()),
+            Self::Tolerance | Self::ToleranceDeg => format!("{}.{}", spec.task.kind().table(), self.name()),
             other => other.definition().key.to_owned(),
         }
     }

@@ -13,6 +13,7 @@ use crate::report::html::page::Page;
 use crate::report::html::table::Cell;
 use crate::report::text::{brief, clean, exact};
 use crate::report::words::{defect_names, length_suffix};
+use crate::task::TaskKind;
 use maud::{Markup, PreEscaped, html};
 
 /// A function that returns the cell of a row, which is given with its place.
@@ -49,7 +50,7 @@ impl Comparison {
         let points = self.rows.first().filter(|_| self.same_target());
         let points = points.map(|row| {
             let count = row.entry.target.len().max(row.entry.pairs.len());
-            format!("{count} target {}s; ", row.entry.noun)
+            format!("{count} target {}s; ", row.entry.kind.noun())
         });
         let notes = self.notes();
         let body = html! {
@@ -147,18 +148,19 @@ impl Comparison {
             [_] => Vec::new(),
             several => several.iter().map(|key| format!("rank by {}", key.name())).collect(),
         };
-        let at = match self.rows.first().map(|row| row.entry.noun) {
-            _ if self.has_angles() => "at which pose",
-            Some("pair") => "at which pair",
-            _ => "at which point",
+        let kind = if self.has_angles() {
+            Some(TaskKind::Motion)
+        } else {
+            self.rows.first().map(|row| row.entry.kind)
         };
+        let at = format!("at which {}", kind.unwrap_or(TaskKind::Path).noun());
         let mut columns = vec![
             Column::new("behind", |_, row| Cell::number(row.behind_percent, tables::behind(row)))
                 .said("behind the best, per cent"),
             Column::figure(self.first_head("sum of squares"), self.first_figure(), 4),
             Column::figure("rms", SortKey::Rms, 4),
             Column::figure("max", SortKey::Max, 4),
-            Column::new("at", |_, row| Cell::whole(row.entry.candidate.error.max_at)).said(at),
+            Column::new("at", |_, row| Cell::whole(row.entry.candidate.error.max_at)).said(&at),
             Column::figure("to curve", SortKey::ToCurve, 4),
             Column::figure("transm.", SortKey::Transmission, 3).said("worst transmission angle"),
             Column::figure("link ratio", SortKey::LinkRatio, 3),

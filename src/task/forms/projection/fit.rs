@@ -20,13 +20,13 @@
 use super::{AngleRole, BodyColumns, GroundKnown, Origin, Projection, Reduced, SINGULAR, UNKNOWNS};
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, Complex, dot, turned};
+use crate::mechanism::{AssemblyMode, Complex, dot, turned, unit_vector};
 use crate::numbers::arithmetic::complex_lanes::{Column, ComplexLanes};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 use crate::numbers::optimise::compact_lm::{CompactLeastSquares, Normal};
 use crate::task::best_frame;
-use crate::task::forms::design_space::{Shape, unit};
+use crate::task::forms::design_space::Shape;
 use std::array::from_fn;
 
 /// The physical solution at a point of the reduced form.
@@ -234,7 +234,7 @@ impl<'a> ProjectedFit<'a> {
             KColumn::Complex => match form.limited_length(ratio, free.norm()) {
                 None => (free, column, [0.0; 3]),
                 Some((length, slope)) => {
-                    let unit = unit(free);
+                    let unit = unit_vector(free);
                     (unit * length, KColumn::Real(turned(unit)), slope)
                 }
             },

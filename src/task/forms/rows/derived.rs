@@ -1,9 +1,9 @@
 //! Rows of the bounds of quantities that are no coordinates of the design space.
 
 use super::{At, Row, RowKind};
+use crate::mechanism::four_bar::gradient::ground_gradient;
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::turned;
-use crate::task::forms::design_space::{Derived, DerivedBound, SHAPE, unit};
+use crate::task::forms::design_space::{Derived, DerivedBound, SHAPE};
 
 pub(super) fn rows(at: &At<'_>, bounds: &[DerivedBound], each: &mut dyn FnMut(&Row)) {
     let (size, shape, links) = (at.size, at.shape, at.links);
@@ -15,14 +15,13 @@ pub(super) fn rows(at: &At<'_>, bounds: &[DerivedBound], each: &mut dyn FnMut(&R
             Derived::CrankSide => at.crank_side(),
             Derived::FollowerSide => at.follower_side(),
             Derived::GroundAngle => {
-                let mut row = [0.0; SHAPE];
                 let ground = shape.follower_pivot - shape.crank_pivot;
-                let across = turned(unit(ground));
                 let middle = 0.5 * (low + high);
                 let value = wrapped(ground.arg() - middle) * size;
-                let scale = size / links[0].max(f64::MIN_POSITIVE);
-                (row[0], row[1]) = (-across.re * scale, -across.im * scale);
-                (row[2], row[3]) = (across.re * scale, across.im * scale);
+                let mut row = [0.0; SHAPE];
+                row[..4].copy_from_slice(
+                    &ground_gradient(shape.crank_pivot, shape.follower_pivot).map(|by| by * size),
+                );
                 let half = 0.5 * (high - low) * size;
                 for sign in [1.0, -1.0] {
                     let row = row.map(|by| -sign * by);

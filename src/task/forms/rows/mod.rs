@@ -27,8 +27,8 @@ mod pivots_in;
 mod swept;
 mod transmission;
 
-use super::design_space::{Derived, DerivedBound, SHAPE, Shape, unit};
-use crate::mechanism::{AssemblyMode, Complex, LinkageType, cross, length};
+use super::design_space::{Derived, DerivedBound, SHAPE, Shape};
+use crate::mechanism::{AssemblyMode, Complex, LinkageType, cross, length, unit_vector};
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::{RequireSpec, TransmissionOver};
 
@@ -253,7 +253,7 @@ struct At<'a> {
 
 impl<'a> At<'a> {
     fn new(requirements: &'a Requirements, shape: &'a Shape, motion: &'a Motion<'a>) -> At<'a> {
-        let g = unit(shape.follower_pivot - shape.crank_pivot);
+        let g = unit_vector(shape.follower_pivot - shape.crank_pivot);
         At {
             size: requirements.size,
             require: &requirements.require,
@@ -272,7 +272,7 @@ impl<'a> At<'a> {
 
     /// Returns |CP| with its derivatives by the shape.
     fn crank_side(&self) -> (f64, [f64; SHAPE]) {
-        let along = unit(self.shape.offset);
+        let along = unit_vector(self.shape.offset);
         let mut row = [0.0; SHAPE];
         (row[7], row[8]) = (along.re, along.im);
         (length(self.shape.offset), row)
@@ -281,7 +281,7 @@ impl<'a> At<'a> {
     /// Returns |DP| with its derivatives by the shape.
     fn follower_side(&self) -> (f64, [f64; SHAPE]) {
         let from_d = self.shape.offset - self.shape.coupler;
-        let along = unit(from_d);
+        let along = unit_vector(from_d);
         let mut row = [0.0; SHAPE];
         (row[5], row[7], row[8]) = (-along.re, along.re, along.im);
         (length(from_d), row)

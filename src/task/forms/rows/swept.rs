@@ -3,10 +3,10 @@
 use super::{Motion, Place, Side};
 use crate::mechanism::four_bar::gradient::{Frame, by_crank_angle, shape_gradient};
 use crate::mechanism::four_bar::position::Kernel;
-use crate::mechanism::{AssemblyMode, Complex, point, turned};
+use crate::mechanism::{AssemblyMode, Complex, point, turned, unit_vector};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
-use crate::task::forms::design_space::{SHAPE, Shape, unit};
+use crate::task::forms::design_space::{SHAPE, Shape};
 
 /// The joints over a motion, without allocation.
 #[expect(clippy::large_enum_variant, reason = "one at a time, on the stack, so that nothing is allocated")]
@@ -281,7 +281,11 @@ impl SweptPosition {
         let d = c + coupler * shape.coupler;
         SweptPosition {
             place,
-            frame: Frame { crank: *crank, coupler: *coupler, follower: unit(d - shape.follower_pivot) },
+            frame: Frame {
+                crank: *crank,
+                coupler: *coupler,
+                follower: unit_vector(d - shape.follower_pivot),
+            },
             joints: [c, d, c + coupler * shape.offset],
         }
     }

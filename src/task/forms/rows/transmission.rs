@@ -2,8 +2,8 @@
 
 use super::{At, Motion, Place, Row, RowKind, Turn};
 use crate::mechanism::four_bar::mobility::linkage_type;
-use crate::mechanism::{Complex, LinkageType, dot, length, turned};
-use crate::task::forms::design_space::{SHAPE, unit};
+use crate::mechanism::{Complex, LinkageType, dot, length, turned, unit_vector};
+use crate::task::forms::design_space::SHAPE;
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::TransmissionOver;
 use std::f64::consts::PI;
@@ -37,7 +37,7 @@ pub(super) fn rows(at: &At<'_>, each: &mut dyn FnMut(&Row)) {
     };
     let at = |crank: Complex, place: Place| {
         let v = shape.follower_pivot - shape.crank_pivot - crank * a;
-        let along = unit(v);
+        let along = unit_vector(v);
         let mut row = [0.0; SHAPE];
         (row[0], row[1], row[2], row[3]) = (-along.re, -along.im, along.re, along.im);
         row[4] = -dot(along, crank);
