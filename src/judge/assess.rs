@@ -3,7 +3,7 @@
 //! Searches call it to rank, `run` to write the record and `verify` to check one: there is one judge, and it uses no
 //! optimiser.
 
-use crate::judge::error::{distances_to_curve, rms};
+use crate::judge::error::{StructuralError, distances_to_curve, rms};
 use crate::judge::loosen::design_limits;
 use crate::judge::referee::judge;
 use crate::judge::requirement::{Judged, at_least, at_most};
@@ -91,26 +91,16 @@ pub fn assess_on_curve(
     });
     let is_function = task.is_function();
     let given_frame = || error.angle.as_ref().map(|angle| frame_deg.unwrap_or(angle.frame.to_degrees()));
-    let ground_deg = linkage.ground_angle().to_degrees();
-    let output = error.angle.as_ref().filter(|_| is_function);
-    let given = problem.spec().task.timing.as_ref().filter(|_| is_function);
+    let offsets_deg = is_function.then(|| offsets_deg(problem, linkage, crank_deg, &error)).flatten();
     let mut candidate = Candidate {
         rank: 0,
         linkage: *linkage,
         crank_deg: crank_deg.to_vec(),
         t1_at: assemblies.to_vec(),
         frame_deg: given_frame().filter(|_| !is_function),
-        input_offset_deg: given.map(|given| match given.offset {
-            AngleOffset::Ground => 0.0,
-            AngleOffset::Free | AngleOffset::Fixed => {
-                within_half_a_turn(crank_deg[0] - given.crank_deg[0] - ground_deg)
-            }
-        }),
-        output_offset_deg: output.map(|angle| {
-            let counts_from_ground = task.body().and_then(|body| body.given_frame(0.0)).is_some();
-            if counts_from_ground { 0.0 } else { within_half_a_turn(-angle.frame.to_degrees() - ground_deg) }
-        }),
-        sense: output.map(|angle| Sense::of(angle.sign)),
+        input_offset_deg: offsets_deg.map(|[input, _]| input),
+        output_offset_deg: offsets_deg.map(|[_, output]| output),
+        sense: error.angle.as_ref().filter(|_| is_function).map(|angle| Sense::of(angle.sign)),
         error: ErrorRecord {
             objective: match problem.spec().solve.objective {
                 Objective::SumOfSquares => error.objective,
@@ -149,6 +139,28 @@ pub fn assess_on_curve(
     candidate.accepted = candidate.requirements.iter().all(|r| r.met)
         && !candidate.defects.iter().any(|d| problem.spec().require.forbids(d));
     Some(candidate)
+}
+
+/// Returns the angles of crank and follower from the line A-B at an input and an output of 0 in a function, degrees; `None` of
+/// another task.
+fn offsets_deg(
+    problem: &Problem,
+    linkage: &FourBar,
+    crank_deg: &[f64],
+    error: &StructuralError,
+) -> Option<[f64; 2]> {
+    let (given, angle) = (problem.spec().task.timing.as_ref()?, error.angle.as_ref()?);
+    let ground_deg = linkage.ground_angle().to_degrees();
+    let input = match given.offset {
+        AngleOffset::Ground => 0.0,
+        AngleOffset::Free | AngleOffset::Fixed => {
+            within_half_a_turn(crank_deg[0] - given.crank_deg[0] - ground_deg)
+        }
+    };
+    let output_from_ground = problem.task().body()?.given_frame(0.0).is_some();
+    let output =
+        if output_from_ground { 0.0 } else { within_half_a_turn(-angle.frame.to_degrees() - ground_deg) };
+    Some([input, output])
 }
 
 /// Returns an angle in degrees within half a turn.

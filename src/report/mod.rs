@@ -24,6 +24,8 @@
 //! | [`analysis_text`] | an analysis as text: the mobility in words, and the tables of positions, motion and methods |
 //! | [`batch_csv`] | a batch as a table for spreadsheets and scripts: one row for each file |
 //! | [`beside`] | lines printed below the candidates: the family, warnings, cognates, the buildable candidate, the picks |
+//! | `bodies` | the drawing of a motion's body: a frame at each pose |
+//! | `body` | the body of a motion, or the follower of a function, at the positions of a candidate: its angles and their errors |
 //! | [`canvas`] | the SVG shapes of the drawings, in pixels with y down, and the view that maps the plane to the canvas, with y up |
 //! | [`certificate`] | the certificate of a result, and the number of times its best answer was found, in words |
 //! | [`chain_sheet`] | a drawing of a compound mechanism at one position, with other positions drawn faintly and the path of its traced point |

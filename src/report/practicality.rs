@@ -249,7 +249,11 @@ impl Words {
 
 /// Returns the description of the table of sensitivities.
 pub(super) fn shift(felt: &Sensitivity, kind: TaskKind) -> String {
-    let settled = settles(felt.crank).replace("point", kind.noun());
+    let alone = match felt.settled {
+        0 => String::new(),
+        n => format!(", and across the path at the {n} of {} points whose crank angle is free", felt.points),
+    };
+    let settled = (settles(felt.crank).to_owned() + &alone).replace("point", kind.noun());
     if kind == TaskKind::Function {
         let settled = settled.replace("pairs move", "outputs change");
         return format!(

@@ -56,31 +56,19 @@ pub fn suite_text(suite: &Suite, colour: Colour) -> String {
         out.extend([WHAT, TIMES, BESIDE].map(said));
         out.extend(is_certified(&paths).then(|| said(PROVED)));
     }
-    if !motions.is_empty() {
-        if !paths.is_empty() {
+    for section in sections(motions, functions) {
+        let is_first = out.is_empty();
+        if !is_first {
             out.push('\n');
         }
-        out.push_str(&format!("  {}\n\n", colour.paint(Ink::Strong, MOTIONS)));
-        for table in [answers_of_motions(&motions, true), effort(&motions, "poses")] {
+        out.push_str(&format!("  {}\n\n", colour.paint(Ink::Strong, section.heading)));
+        for table in section.tables() {
             out.push_str(&table.shortened(NAME).render(colour));
             out.push('\n');
         }
-        out.push_str(&said(WHAT_OF_MOTIONS));
-        out.extend(paths.is_empty().then(|| said(TIMES)));
-        out.extend(without_populations(&motions).map(|why| said(&why)));
-    }
-    if !functions.is_empty() {
-        if !(paths.is_empty() && motions.is_empty()) {
-            out.push('\n');
-        }
-        out.push_str(&format!("  {}\n\n", colour.paint(Ink::Strong, FUNCTIONS)));
-        for table in [answers_of_motions(&functions, false), effort(&functions, "pairs")] {
-            out.push_str(&table.shortened(NAME).render(colour));
-            out.push('\n');
-        }
-        out.push_str(&said(WHAT_OF_FUNCTIONS));
-        out.extend((paths.is_empty() && motions.is_empty()).then(|| said(TIMES)));
-        out.extend(without_populations(&functions).map(|why| said(&why)));
+        out.push_str(&said(section.meaning));
+        out.extend(is_first.then(|| said(TIMES)));
+        out.extend(without_populations(&section.problems).map(|why| said(&why)));
     }
     out.extend(proofs(suite).iter().map(|proof| said(proof)));
     let notes = notes(suite);
@@ -118,23 +106,14 @@ pub fn suite_markdown(suite: &Suite) -> String {
         out.push('\n');
         out.push_str(&paragraph(WHAT));
     }
-    if !motions.is_empty() {
-        out.push_str(&format!("## {MOTIONS}\n\n"));
-        for table in [answers_of_motions(&motions, true), effort(&motions, "poses")] {
+    for section in sections(motions, functions) {
+        out.push_str(&format!("## {}\n\n", section.heading));
+        for table in section.tables() {
             out.push_str(&table.markdown());
             out.push('\n');
         }
-        out.push_str(&paragraph(WHAT_OF_MOTIONS));
-        out.extend(without_populations(&motions).map(|why| paragraph(&why)));
-    }
-    if !functions.is_empty() {
-        out.push_str(&format!("## {FUNCTIONS}\n\n"));
-        for table in [answers_of_motions(&functions, false), effort(&functions, "pairs")] {
-            out.push_str(&table.markdown());
-            out.push('\n');
-        }
-        out.push_str(&paragraph(WHAT_OF_FUNCTIONS));
-        out.extend(without_populations(&functions).map(|why| paragraph(&why)));
+        out.push_str(&paragraph(section.meaning));
+        out.extend(without_populations(&section.problems).map(|why| paragraph(&why)));
     }
     out.push_str(&paragraph(TIMES));
     out.extend(is_certified(&paths).then(|| paragraph(PROVED)));
@@ -169,6 +148,47 @@ fn by_kind(suite: &Suite) -> (Vec<&ProblemResult>, Vec<&ProblemResult>, Vec<&Pro
     let (functions, others): (Vec<_>, Vec<_>) = suite.problems.iter().partition(|p| p.is_function());
     let (motions, paths) = others.into_iter().partition(|p| p.is_motion());
     (paths, motions, functions)
+}
+
+/// The motions or the functions of a suite, with the words about them.
+struct Section<'a> {
+    problems: Vec<&'a ProblemResult>,
+    heading: &'static str,
+    /// The meaning of the columns.
+    meaning: &'static str,
+    /// The word for their targets.
+    nouns: &'static str,
+    /// Whether they have errors of places too.
+    has_places: bool,
+}
+
+impl Section<'_> {
+    /// Returns the table of the answers and that of the effort.
+    fn tables(&self) -> [Grid; 2] {
+        [answers_of_motions(&self.problems, self.has_places), effort(&self.problems, self.nouns)]
+    }
+}
+
+/// Returns the sections of a suite that are not empty.
+fn sections<'a>(
+    motions: Vec<&'a ProblemResult>,
+    functions: Vec<&'a ProblemResult>,
+) -> impl Iterator<Item = Section<'a>> {
+    let motions = Section {
+        problems: motions,
+        heading: MOTIONS,
+        meaning: WHAT_OF_MOTIONS,
+        nouns: "poses",
+        has_places: true,
+    };
+    let functions = Section {
+        problems: functions,
+        heading: FUNCTIONS,
+        meaning: WHAT_OF_FUNCTIONS,
+        nouns: "pairs",
+        has_places: false,
+    };
+    [motions, functions].into_iter().filter(|section| !section.problems.is_empty())
 }
 
 /// Returns whether certificates were asked for.

@@ -116,10 +116,6 @@ fn rows(record: &Record, colour: Colour) -> String {
     let max: Column<'_, Candidate> = (Right, "max", &|c| plain(significant(c.error.max, 4)));
     let [first, second, third] = if parts { [at, rms, max] } else { [rms, max, at] };
     let objective = |c: &Candidate| if ranks.is_some() { c.error.objective } else { c.error.sum_sq };
-    let transmission = |c: &Candidate| {
-        let (worst, over) = (c.transmission_deg.worst, words::over(c.transmission_deg.over));
-        format!("{}° {over:<5}", significant(worst, 3))
-    };
     let grid = Grid::of(
         &record.candidates,
         &[
@@ -146,10 +142,6 @@ const EXACT: f64 = 1e-7;
 /// Returns the rows of a motion: beside the errors of the place, those of the angle.
 fn rows_of_motion(record: &Record, colour: Colour) -> String {
     let head = words::minimised_in(record).map_or("objective", |(head, _)| head);
-    let transmission = |c: &Candidate| {
-        let (worst, over) = (c.transmission_deg.worst, words::over(c.transmission_deg.over));
-        format!("{}° {over:<5}", significant(worst, 3))
-    };
     let size = record.problem.resolved.task.to_task().map_or(1.0, |task| task.size());
     // Of an exact answer only the power of ten matters.
     let short = |value: f64, scale: f64, digits: usize| {
@@ -181,10 +173,6 @@ fn rows_of_motion(record: &Record, colour: Colour) -> String {
 /// Returns the rows of a function: the errors of the output in degrees, and the angles from which both links start.
 fn rows_of_function(record: &Record, colour: Colour) -> String {
     let ranks = words::minimised_in(record);
-    let transmission = |c: &Candidate| {
-        let (worst, over) = (c.transmission_deg.worst, words::over(c.transmission_deg.over));
-        format!("{}° {over:<5}", significant(worst, 3))
-    };
     let size = record.problem.resolved.task.to_task().map_or(1.0, |task| task.error_size());
     let error = |value: f64, digits| significant(value, if value < EXACT * size { 1 } else { digits });
     let degrees = |value: f64| plain(error(value, 4) + "°");
@@ -210,6 +198,12 @@ fn rows_of_function(record: &Record, colour: Colour) -> String {
         ],
     );
     grid.render(colour)
+}
+
+/// Returns the worst transmission angle with the motion over which it was taken: `45.1° cycle`.
+fn transmission(candidate: &Candidate) -> String {
+    let (worst, over) = (candidate.transmission_deg.worst, words::over(candidate.transmission_deg.over));
+    format!("{}° {over:<5}", significant(worst, 3))
 }
 
 /// Returns the point that decides the rank: that of the largest error, or of the largest in parts of the tolerances if

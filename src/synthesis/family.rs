@@ -2,9 +2,8 @@
 //! best transmitting one is wanted.
 //!
 //! A pose gives three equations and a place two, and each target takes one of them for its own crank angle; a pair of a
-//! function gives one. Exact answers
-//! that the rounds have found are led along their family: the least transmission angle asked for is raised step by step
-//! and the linkage fitted again, for as long as it stays exact; then the step is halved.
+//! function gives one. Exact answers that the rounds have found are led along their family: the least transmission angle
+//! asked for is raised step by step and the linkage fitted again, for as long as it stays exact; then the step is halved.
 
 use crate::judge::rank::{chosen, exact_cost, searched, sort};
 use crate::record::{Axis, Candidate};

@@ -38,8 +38,8 @@ pub(super) struct FunctionStarts<'a> {
     space: DesignSpace,
     /// The inputs e^{i dphi_j} and outputs e^{i dpsi_j} of the pairs that enter the linear solutions.
     pairs: Vec<[Complex; 2]>,
-    /// The direction of the ground line and its length, where starts are made.
-    ground: Complex,
+    /// The shape in the middle of the design space, whose pivots starts have.
+    middle: Shape,
     /// Whether the offsets of inputs and outputs are free.
     free: [bool; 2],
 }
@@ -60,14 +60,14 @@ impl<'a> FunctionStarts<'a> {
         let pairs = (0..n).step_by(every).chain(last).filter_map(of).collect();
         let space = problem.space(problem.sides()[0]);
         let middle = space.bounds().map(|(low, high)| if low.is_finite() { 0.5 * (low + high) } else { 0.0 });
-        let at = space.shape(&middle)?;
+        let middle = space.shape(&middle)?;
         let Link::Follower { offset, .. } = body.link else { return None };
         let output_is_free = offset == AngleOffset::Free;
         Some(FunctionStarts {
             problem,
             space,
             pairs,
-            ground: at.follower_pivot - at.crank_pivot,
+            middle,
             free: [problem.offset_is_free(), output_is_free],
         })
     }
@@ -104,34 +104,29 @@ impl<'a> FunctionStarts<'a> {
         let sign = signs[below(draws, signs.len())];
         let offsets = self.free.map(|free| if free { uniform(draws, 0.0, TAU) } else { 0.0 });
         if below(draws, RANDOM_EVERY) > 0 {
-            let through = (below(draws, EXACT_EVERY) == 0).then(|| below(draws, usize::MAX >> 1) as u64);
+            let n = self.pairs.len();
+            let through = (below(draws, EXACT_EVERY) == 0).then(|| {
+                let number = below(draws, usize::MAX >> 1);
+                [number % n, (number / n) % n, (number / n / n) % n]
+            });
             return self.start(sign, &self.solution(sign, offsets, through)?);
         }
-        let ground = self.ground.norm();
+        let ground = self.ground().norm();
         let limits = self.space.link_limits();
         let mut length = |limits: Limits| {
             let low = limits.0.max(1e-3 * ground);
             (uniform(draws, low.ln(), limits.1.min(1e3 * ground).max(low).ln())).exp() / ground
         };
         let [crank, coupler, follower] = [length(limits[1]), length(limits[2]), length(limits[3])];
-        let [_, psi] = offsets;
-        self.start(
-            sign,
-            &Solution { lengths: [crank, coupler, follower], offsets: [offsets[0], psi], error: 0.0 },
-        )
+        self.start(sign, &Solution { lengths: [crank, coupler, follower], offsets, error: 0.0 })
     }
 
-    /// Returns the linear solution at offsets, of all pairs or exactly through three that `through` chooses; `None` if it is
-    /// no linkage.
-    fn solution(&self, sign: f64, offsets: [f64; 2], through: Option<u64>) -> Option<Solution> {
+    /// Returns the linear solution at offsets, of all pairs or exactly through three of them; `None` if it is no linkage.
+    fn solution(&self, sign: f64, offsets: [f64; 2], through: Option<[usize; 3]>) -> Option<Solution> {
         let turns = offsets.map(|offset| Complex::from_polar(1.0, offset));
         let all = || self.turned_pairs(sign, turns);
         let k = match through {
-            Some(number) => {
-                let n = self.pairs.len() as u64;
-                let chosen = [number % n, (number / n) % n, (number / n / n) % n];
-                solved(chosen.iter().filter_map(|j| all().nth(*j as usize)).map(|pair| (pair, 1.0)))?
-            }
+            Some(chosen) => solved(chosen.iter().filter_map(|j| all().nth(*j)).map(|pair| (pair, 1.0)))?,
             None => {
                 let first = solved(all().map(|pair| (pair, 1.0)))?;
                 let weighted = all().map(|pair| {
@@ -166,6 +161,11 @@ impl<'a> FunctionStarts<'a> {
         Some(Solution { lengths: [p.abs(), q_sq.sqrt(), r.abs()], offsets: turned, error })
     }
 
+    /// Returns the vector from A to B.
+    fn ground(&self) -> Complex {
+        self.middle.follower_pivot - self.middle.crank_pivot
+    }
+
     /// Returns the pairs as directions of crank and follower from the ground line.
     fn turned_pairs(&self, sign: f64, [crank, follower]: [Complex; 2]) -> impl Iterator<Item = [Complex; 2]> {
         self.pairs.iter().map(move |[e, f]| [e * crank, if sign < 0.0 { f.conj() } else { *f } * follower])
@@ -180,16 +180,13 @@ impl<'a> FunctionStarts<'a> {
         let (c, d) = (e * p, Complex::new(1.0, 0.0) + f * r);
         let left = ((Complex::new(1.0, 0.0) - c).conj() * (d - c)).im;
         let assembly = if left < 0.0 { AssemblyMode::Minus } else { AssemblyMode::Plus };
-        let ground = self.ground.norm();
-        let middle =
-            self.space.bounds().map(|(low, high)| if low.is_finite() { 0.5 * (low + high) } else { 0.0 });
-        let at = self.space.shape(&middle)?;
-        let shape = Shape { crank: p * ground, coupler: q * ground, follower: r * ground, ..at };
-        let shape = Shape { offset: Complex::new(shape.coupler, 0.0), ..shape };
+        let ground = self.ground().norm();
+        let [crank, coupler, follower] = [p, q, r].map(|length| length * ground);
+        let shape = Shape { crank, coupler, follower, offset: Complex::new(coupler, 0.0), ..self.middle };
         let types = self.problem.types();
         let aim = if types.is_empty() { None } else { nearest_type(shape.links(), types) };
         let setting = Setting { aim, assembly, direction: sign, side: CouplerSide::Plus };
-        let offset = if self.free[0] { offsets[0] + self.ground.arg() } else { 0.0 };
+        let offset = if self.free[0] { offsets[0] + self.ground().arg() } else { 0.0 };
         Some(Start { design: self.space.design(&shape, offset), setting, positions: Vec::new() })
     }
 }

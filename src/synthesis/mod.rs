@@ -15,10 +15,13 @@
 //! | [`continuation`] | the method `continuation`: all linkages through nine precision points, as candidates, alone or beside the approximate answers of `auto` |
 //! | [`driver`] | the loop of every search in batches: states saved, a batch run, progress reported, the stopping rule asked |
 //! | [`dyads`] | Burmester's problem: the dyads that guide a body through given poses, exactly or nearly, and the linkages of two of them |
+//! | `ellipse` | the ellipse through the points of a closed target that is nearly one |
 //! | [`errors_without`] | the error that is left without each requirement that is active at the best candidate |
+//! | `family` | families of exact answers, along which the transmission angle is raised |
 //! | [`frame`] | the canonical frame in which problems of free timing are searched, and the way back of their candidates |
 //! | [`free`] | multistart search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt fits on the torus, and a stopping rule by repeated hits of the best answer |
 //! | [`front`] | the front of a problem: the trade-off between error, transmission angle, extent and other figures, by fits under tightened limits |
+//! | `function_starts` | starts of function generation: linear solutions of Freudenstein's equation over a grid of offsets |
 //! | [`keeper`] | checkpoints of long searches: the state of a search at a batch boundary, and the keeper that saves it |
 //! | [`live`] | live fitting to a target that the user moves: known candidates follow it by warm starts, and the answers of a search join them |
 //! | [`local`] | the local searches by least squares, chosen by the timing |

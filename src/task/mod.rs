@@ -15,6 +15,7 @@
 //! | [`spec`] | the problem as data: every key of a problem file with its default filled in |
 //! | `task_spec` | the task as data: a list of targets, written as `path`, as `motion` or as `function` |
 //! | `targets` | the synthesis task: a list of targets for the coupler point and, in poses, for the angle of the body, or for the angle of the follower, with or without crank angles |
+//! | `values` | the value types of TOML files, with errors in a designer's words |
 
 mod builder;
 pub mod defect;

@@ -362,8 +362,11 @@ fn a_wrong_dimension_changes_the_output_as_its_derivative_says() {
         let of = generated(draws, 11);
         let linkage = of.linkage.with_assembly(of.linkage.assembly());
         let t1 = linkage.assembly().sign();
-        let at: Vec<At> =
-            of.crank.iter().map(|angle| At { crank_angle: *angle, assembly: linkage.assembly() }).collect();
+        let at: Vec<At> = of
+            .crank
+            .iter()
+            .map(|angle| At { crank_angle: *angle, assembly: linkage.assembly(), is_free: false })
+            .collect();
         let felt = output_sensitivity(&linkage, &at, Crank::OffsetIsSet, true).expect("it has derivatives");
         let outputs = |linkage: &FourBar, turn: f64| -> Vec<f64> {
             let ground = linkage.ground_angle();

@@ -2,6 +2,8 @@
 
 use crate::common::parse;
 use crate::motion::{ALONE, solved};
+use linkwright::internals::judge::practicality::sensitivity::Crank;
+use linkwright::internals::judge::practicality::sensitivity_of;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::numbers::arithmetic::streams::{stream, uniform};
 use linkwright::internals::numbers::optimise::levenberg_marquardt::derivative_error;
@@ -11,7 +13,7 @@ use linkwright::internals::synthesis::starts::Starts;
 use linkwright::internals::synthesis::{Budget, Context};
 use linkwright::internals::task::forms::timed::TimedPathFit;
 use linkwright::spec::{ProblemSpec, TimingSpec};
-use linkwright::{AngleOffset, Problem};
+use linkwright::{AngleOffset, FourBar, NaturalCoordinates, Problem};
 use std::sync::atomic::AtomicBool;
 
 /// A foot 120 mm along the ground in thirteen even steps while the crank turns by `stance_deg`, and back over (60, 40) at any
@@ -107,6 +109,55 @@ fn a_linkage_by_itself_is_measured_at_the_timed_angles_and_nearest_between_them(
     let (crank_deg, _) = nearest_positions(&problem, &best.linkage).expect("it closes");
     for (has, found) in best.crank_deg.iter().zip(&crank_deg) {
         assert!((has - found).abs() < 1e-3, "{has} {found}");
+    }
+}
+
+#[test]
+fn a_wrong_dimension_shifts_the_path_as_its_derivative_says() {
+    // Of a linkage whose coupler point is not near the line C-D, so that d and e are among the dimensions.
+    let spec = foot(90.0, ALONE);
+    let problem = Problem::new(spec.clone()).expect("a problem");
+    let best = solved(spec).candidates.remove(0);
+    let felt = sensitivity_of(&problem, &best).expect("it has derivatives");
+    assert_eq!((felt.crank, felt.settled), (Crank::OffsetIsSet, 1));
+    let step = 1e-5;
+    for (letter, dimension) in
+        ["Ax", "Ay", "Bx", "By", "a", "b", "c", "d", "e"].into_iter().zip(felt.dimensions)
+    {
+        assert_eq!(dimension.name, letter);
+        let mut parameters = NaturalCoordinates::from(best.linkage);
+        match letter {
+            "Ax" => parameters.crank_pivot[0] += step,
+            "Ay" => parameters.crank_pivot[1] += step,
+            "Bx" => parameters.follower_pivot[0] += step,
+            "By" => parameters.follower_pivot[1] += step,
+            "a" => parameters.crank += step,
+            "b" => parameters.coupler += step,
+            "c" => parameters.follower += step,
+            "d" => parameters.crank_side += step,
+            _ => parameters.follower_side += step,
+        }
+        let other = FourBar::new(parameters).expect("a linkage");
+        let place = |linkage: &FourBar, j: usize, turn: f64| {
+            let linkage = linkage.with_assembly(best.t1_at[j]);
+            linkage.position(best.crank_deg[j].to_radians() + turn).joints().expect("it closes").coupler_point
+        };
+        // The shift at a target, and the way of the coupler point there, by radian.
+        let of = |j: usize| {
+            let here = place(&best.linkage, j, 0.0);
+            ((place(&other, j, 0.0) - here) / step, (place(&best.linkage, j, step) - here) / step)
+        };
+        let (shifts, ways): (Vec<_>, Vec<_>) = (0..14).map(of).unzip();
+        let along = |j: usize| (ways[j].conj() * shifts[j]).re;
+        // One offset of the crank for the thirteen timed targets; the last one has its own.
+        let offset =
+            (0..13).map(along).sum::<f64>() / ways[..13].iter().map(|way| way.norm_sqr()).sum::<f64>();
+        let left = |j: usize| {
+            let offset = if j == 13 { along(j) / ways[j].norm_sqr() } else { offset };
+            (shifts[j] - ways[j] * offset).norm_sqr()
+        };
+        let rms = ((0..14).map(left).sum::<f64>() / 14.0).sqrt();
+        assert!((dimension.rms - rms).abs() < 1e-3 * (1.0 + rms), "{letter}: {} {rms}", dimension.rms);
     }
 }
 

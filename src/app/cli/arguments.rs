@@ -15,7 +15,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Finds the four-bar linkage whose coupler point draws the path you ask for, or that takes a body through your poses.
+/// Finds the four-bar linkage that draws the path you ask for, takes a body through your poses, or turns one angle into another.
 #[derive(Debug, Parser)]
 #[command(
     name = "linkwright",

@@ -16,6 +16,7 @@
 //! | [`front`] | `front`: the trade-off between error, transmission angle, size and other figures |
 //! | [`inputs`] | inputs of `synth`: files and folders of problem files, each with the folder of its result |
 //! | [`interrupt`] | signals |
+//! | `keyboard` | Enter, pressed at the terminal while a command runs |
 //! | [`man`] | `man`: the manual pages, made from the same definitions that `--help` is made from |
 //! | [`new`] | `new`: a problem file to start from |
 //! | [`output`] | output files at places that a user names: files of other origin are kept, unless `--force` |

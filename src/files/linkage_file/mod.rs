@@ -321,7 +321,7 @@ pub fn to_toml(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
     )
 }
 
-/// What the links of a linkage carry besides themselves: a body on the coupler, or the scales of a function.
+/// An addition to a linkage that moves with its links: a body on the coupler, or the scales of a function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Carried {
     /// A body whose x axis lies so many degrees from the line from C to D.
@@ -332,7 +332,7 @@ pub enum Carried {
 }
 
 impl Carried {
-    /// Returns what the links of a candidate carry; `None` in a path.
+    /// Returns the body or the function of a candidate; `None` in a path.
     pub fn of(candidate: &Candidate) -> Option<Carried> {
         let Candidate { frame_deg, input_offset_deg, output_offset_deg, sense, .. } = candidate;
         let function = || Some(Carried::Function([(*input_offset_deg)?, (*output_offset_deg)?], (*sense)?));
@@ -340,7 +340,7 @@ impl Carried {
     }
 }
 
-/// Returns the linkage file of a linkage as [`to_toml`] does, with a comment on what its links carry.
+/// Returns the linkage file of a linkage as [`to_toml`] does, with a comment on the body or the function.
 pub fn to_toml_with(name: &str, unit: Option<Unit>, linkage: &FourBar, carried: Option<Carried>) -> String {
     let text = to_toml(name, unit, linkage);
     let comment = match carried {

@@ -23,6 +23,6 @@ mod usual;
 
 pub use clearance::{Build, Joint};
 pub use closest::Closest;
-pub use subject::{Practicality, crank_of, sensitivity_of};
+pub use subject::{Practicality, sensitivity_of};
 pub use sweep::Sweep;
 pub use usual::usual_tolerance;

@@ -10,7 +10,8 @@
 //! with an independent error of standard deviation sigma in every dimension. The shift depends on the behaviour of the
 //! crank angles once the linkage is built, see [`Crank`]: with free timing the part of dP along the path only makes the
 //! point pass earlier or later, and the shift of the path is the part across it. (If the path misses the target by
-//! T - P, that vector is perpendicular to the path, and the distance from the target changes by the same part.)
+//! T - P, that vector is perpendicular to the path, and the distance from the target changes by the same part.) So it is too
+//! at a point whose crank angle is free although those of others are prescribed.
 //!
 //! Of a function it is not the path that counts but the output: s_jk is then the change of the follower's angle from the
 //! ground line, in degrees, for a unit error of dimension k; where the offset of outputs is free, its mean is set to zero anew.
@@ -52,6 +53,9 @@ pub struct At {
     pub crank_angle: f64,
     /// The assembly mode.
     pub assembly: AssemblyMode,
+    /// Whether the crank angle of this position is free although those of others are prescribed: it settles as with
+    /// [`Crank::Settles`].
+    pub is_free: bool,
 }
 
 /// Shift of the path for a unit error of one dimension.
@@ -86,6 +90,8 @@ pub struct Sensitivity {
     pub at_toggles: Vec<usize>,
     /// Number of points with a derivative.
     pub points: usize,
+    /// Number of those at which the crank angle is free although those of others are prescribed.
+    pub settled: usize,
 }
 
 impl Sensitivity {
@@ -103,6 +109,7 @@ pub fn along(sweep: &Sweep, n: usize) -> Vec<At> {
         (0..n).map(move |i| At {
             crank_angle: stretch.from + (stretch.to - stretch.from) * (i as f64 + 0.5) / n as f64,
             assembly: stretch.assembly,
+            is_free: false,
         })
     };
     sweep.stretches.iter().flat_map(of).collect()
@@ -161,7 +168,7 @@ fn sensitivity_of(
     let flat = is_flat(linkage) && output.is_none();
     let mut at_toggles = Vec::new();
     let mut places = Vec::new();
-    let mut rows: Vec<([Complex; 10], Complex)> = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
     let ground = Complex::from_polar(1.0, linkage.ground_angle());
     let columns = |at: &At| match output {
         None => columns(linkage, at, flat),
@@ -175,28 +182,30 @@ fn sensitivity_of(
         };
         let mut row = [Complex::new(0.0, 0.0); 10];
         row[..9].copy_from_slice(&nine);
+        let settles = crank == Crank::Settles || positions[j].is_free;
         if crank == Crank::TurnsWithGround {
             let by_ground = ground_gradient(linkage.crank_pivot(), linkage.follower_pivot());
             row.iter_mut().zip(by_ground).for_each(|(shift, by)| *shift += by_crank * by);
         }
         row[9] = row[2] * ground.re + row[3] * ground.im;
-        if matches!(crank, Crank::Stays | Crank::TurnsWithGround) {
+        if !settles && matches!(crank, Crank::Stays | Crank::TurnsWithGround) {
             by_crank = Complex::new(0.0, 0.0);
         }
         places.push(j);
-        rows.push((row, by_crank));
+        rows.push(Row { shifts: row, by_crank, settles });
     }
     if output == Some(true) {
         without_mean(&mut rows);
     }
+    let settled = if crank == Crank::Settles { 0 } else { rows.iter().filter(|row| row.settles).count() };
     settle(&mut rows, crank);
     let of =
-        |k: usize, name: &'static str| dimension(name, &places, rows.iter().map(|(row, _)| length(row[k])));
+        |k: usize, name: &'static str| dimension(name, &places, rows.iter().map(|row| length(row.shifts[k])));
     let mut names = ["Ax", "Ay", "Bx", "By", "a", "b", "c", "d", "e"];
     if flat {
         (names[7], names[8]) = ("coupler_x", "coupler_y");
     }
-    let together = rows.iter().map(|(row, _)| row[..9].iter().map(Complex::norm_sqr).sum::<f64>().sqrt());
+    let together = rows.iter().map(|row| row.shifts[..9].iter().map(Complex::norm_sqr).sum::<f64>().sqrt());
     let all = dimension("all", &places, together)?;
     let mut dimensions = [all; 9];
     for (k, name) in names.into_iter().enumerate() {
@@ -211,42 +220,53 @@ fn sensitivity_of(
         worst_at: all.worst_at,
         at_toggles,
         points: rows.len(),
+        settled,
     })
 }
 
+/// The shifts at a position for errors of the nine dimensions and of |AB|.
+struct Row {
+    shifts: [Complex; 10],
+    /// The shift by the crank angle; zero where that stays.
+    by_crank: Complex,
+    /// Whether the crank settles at this position alone.
+    settles: bool,
+}
+
 /// Removes the mean of each column: the part that the offset of outputs compensates.
-fn without_mean(rows: &mut [([Complex; 10], Complex)]) {
+fn without_mean(rows: &mut [Row]) {
     let n = rows.len().max(1) as f64;
     let means: [Complex; 10] =
-        std::array::from_fn(|k| rows.iter().map(|(row, _)| row[k]).sum::<Complex>() / n);
-    let mean_by_crank = rows.iter().map(|(_, by_crank)| by_crank).sum::<Complex>() / n;
-    for (row, by_crank) in rows.iter_mut() {
-        row.iter_mut().zip(means).for_each(|(shift, mean)| *shift -= mean);
-        *by_crank -= mean_by_crank;
+        std::array::from_fn(|k| rows.iter().map(|row| row.shifts[k]).sum::<Complex>() / n);
+    let mean_by_crank = rows.iter().map(|row| row.by_crank).sum::<Complex>() / n;
+    for row in rows.iter_mut() {
+        row.shifts.iter_mut().zip(means).for_each(|(shift, mean)| *shift -= mean);
+        row.by_crank -= mean_by_crank;
     }
 }
 
-/// Removes from the shifts the part that the crank compensates.
-fn settle(rows: &mut [([Complex; 10], Complex)], crank: Crank) {
-    let fastest = rows.iter().map(|(_, by_crank)| length(*by_crank)).fold(0.0, f64::max);
-    match crank {
-        Crank::Stays | Crank::TurnsWithGround => {}
-        Crank::Settles => {
-            for (row, by_crank) in rows.iter_mut() {
-                let speed = length(*by_crank);
-                if speed > STANDSTILL * fastest {
-                    let across = Complex::from_polar(1.0, by_crank.arg() + FRAC_PI_2);
-                    row.iter_mut().for_each(|shift| *shift = across * dot(across, *shift));
-                }
-            }
+/// Removes from the shifts the part that the crank compensates. Where it settles at a position alone, its common offset
+/// moves P along the path there, which does not count.
+fn settle(rows: &mut [Row], crank: Crank) {
+    let fastest = rows.iter().map(|row| length(row.by_crank)).fold(0.0, f64::max);
+    for row in rows.iter_mut().filter(|row| row.settles) {
+        if length(row.by_crank) > STANDSTILL * fastest {
+            let across = Complex::from_polar(1.0, row.by_crank.arg() + FRAC_PI_2);
+            row.shifts.iter_mut().for_each(|shift| *shift = across * dot(across, *shift));
         }
-        Crank::OffsetIsSet => {
-            let sum_sq: f64 = rows.iter().map(|(_, by_crank)| by_crank.norm_sqr()).sum();
-            if sum_sq > 0.0 {
-                for k in 0..10 {
-                    let along: f64 = rows.iter().map(|(row, by_crank)| dot(*by_crank, row[k])).sum();
-                    rows.iter_mut().for_each(|(row, by_crank)| row[k] -= *by_crank * (along / sum_sq));
-                }
+    }
+    if crank == Crank::OffsetIsSet {
+        let timed = || rows.iter().filter(|row| !row.settles);
+        let sum_sq: f64 = timed().map(|row| row.by_crank.norm_sqr()).sum();
+        if sum_sq > 0.0 {
+            let along: [f64; 10] =
+                std::array::from_fn(|k| timed().map(|row| dot(row.by_crank, row.shifts[k])).sum());
+            for row in rows.iter_mut().filter(|row| !row.settles) {
+                let by_crank = row.by_crank;
+                row.shifts
+                    .iter_mut()
+                    .zip(along)
+                    .for_each(|(shift, along)| *shift -= by_crank * (along / sum_sq));
             }
         }
     }

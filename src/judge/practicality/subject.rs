@@ -6,11 +6,10 @@ use super::layers::{Layering, layering};
 use super::sensitivity::{At, Crank, Sensitivity, along, output_sensitivity, sensitivity};
 use super::sweep::Sweep;
 use crate::judge::referee::judge;
-use crate::mechanism::FourBar;
+use crate::mechanism::{AssemblyMode, FourBar};
 use crate::record::Candidate;
-use crate::task::Problem;
 use crate::task::spec::TransmissionOver;
-use crate::task::{AngleOffset, TaskKind, Timing};
+use crate::task::{AngleOffset, Problem, TaskKind, Timing};
 
 /// Number of positions on each stretch of the motion at which the path of a linkage without a target is examined.
 const POSITIONS: usize = 72;
@@ -69,17 +68,22 @@ impl Practicality {
 }
 
 impl At {
-    /// Returns the positions of a candidate, one for each target point.
-    pub fn of_candidate(candidate: &Candidate) -> Vec<At> {
-        let positions = candidate.crank_deg.iter().zip(&candidate.t1_at);
-        positions.map(|(deg, assembly)| At { crank_angle: deg.to_radians(), assembly: *assembly }).collect()
+    /// Returns the positions of a candidate of a problem, one for each target.
+    pub fn of_candidate(problem: &Problem, candidate: &Candidate) -> Vec<At> {
+        let positions = candidate.crank_deg.iter().zip(&candidate.t1_at).enumerate();
+        let at = |(j, (deg, assembly)): (usize, (&f64, &AssemblyMode))| At {
+            crank_angle: deg.to_radians(),
+            assembly: *assembly,
+            is_free: problem.task().is_untimed(j),
+        };
+        positions.map(at).collect()
     }
 }
 
 /// Returns the sensitivity of a candidate: of its path, or in a function of its output; `None` if no position has a
 /// derivative.
 pub fn sensitivity_of(problem: &Problem, candidate: &Candidate) -> Option<Sensitivity> {
-    let (linkage, at, crank) = (&candidate.linkage, At::of_candidate(candidate), crank_of(problem));
+    let (linkage, at, crank) = (&candidate.linkage, At::of_candidate(problem, candidate), crank_of(problem));
     match problem.task().body().filter(|_| problem.is_function()) {
         None => sensitivity(linkage, &at, crank),
         Some(output) => output_sensitivity(linkage, &at, crank, output.given_frame(0.0).is_none()),
@@ -87,7 +91,7 @@ pub fn sensitivity_of(problem: &Problem, candidate: &Candidate) -> Option<Sensit
 }
 
 /// Returns the behaviour of a problem's crank angles when a dimension is off.
-pub fn crank_of(problem: &Problem) -> Crank {
+fn crank_of(problem: &Problem) -> Crank {
     match problem.task().timing() {
         Timing::Free => Crank::Settles,
         Timing::Prescribed { offset: AngleOffset::Free, .. } => Crank::OffsetIsSet,

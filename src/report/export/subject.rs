@@ -28,7 +28,7 @@ pub struct Subject {
     pub positions: Vec<(f64, AssemblyMode)>,
     /// In a motion: the angle from C -> D to the body's x axis, degrees.
     pub frame_deg: Option<f64>,
-    /// What its links carry.
+    /// The body or the function that moves with its links; `None` in a path.
     pub carried: Option<Carried>,
     /// In a motion: the angle of the body at each target, degrees; `None` where only the place counts.
     pub body_deg: Vec<Option<f64>>,

@@ -42,7 +42,7 @@ struct Motion<'a> {
     at: MotionState,
 }
 
-/// What a round starts from.
+/// The kind of a start of a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// Dyads that the poses suggest, or drawn ones; it alone counts for the stopping rule.

@@ -2,8 +2,7 @@
 
 use super::refit::{Fixed, Length, refit};
 use super::stock::Stock;
-use crate::judge::practicality::crank_of;
-use crate::judge::practicality::sensitivity::{At, sensitivity};
+use crate::judge::practicality::sensitivity_of;
 use crate::judge::rank::compare;
 use crate::record::{Candidate, Evaluations, Reason};
 use crate::synthesis::Context;
@@ -203,7 +202,7 @@ fn to_snap(problem: &Problem, candidate: &Candidate, request: &Request) -> Vec<L
     };
     let mut lengths: Vec<Length> =
         Length::ALL.into_iter().filter(|length| request.lengths.contains(length)).filter(free).collect();
-    if let Some(felt) = sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem)) {
+    if let Some(felt) = sensitivity_of(problem, candidate) {
         let of = |length: &Length| match length {
             Length::Ground => felt.ground.rms,
             // d and e each count as both if the coupler point is measured along and across.
