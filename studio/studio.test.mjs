@@ -129,6 +129,39 @@ test("draw, drag, pin, save, reload, restart", async () => {
   await second.end();
 });
 
+test("an edit in the frame in which the connection opens is not lost", async () => {
+  const { address, end } = await studio("--port", "18478");
+  const { page, context } = await opened(address);
+  await doing(page, "done");
+  const other = await context.newPage();
+  // The page learns only when the test says so that the connection is open.
+  await other.addInitScript(() => {
+    const listen = WebSocket.prototype.addEventListener;
+    WebSocket.prototype.addEventListener = function (kind, hear) {
+      const later = (event) => {
+        window.openNow = () => hear(event);
+      };
+      listen.call(this, kind, kind === "open" ? later : hear);
+    };
+  });
+  await other.goto(new URL("/", address).href);
+  await other.waitForFunction(() => window.openNow && document.body.dataset.asked);
+  // What was asked at first has gone to the connection that is not open yet.
+  await other.evaluate(() => new Promise((go) => requestAnimationFrame(() => requestAnimationFrame(go))));
+  const [before, after] = await other.evaluate(() => {
+    const { asked } = document.body.dataset;
+    const field = document.querySelector("#transmission");
+    field.value = "44";
+    for (const kind of ["input", "change"]) field.dispatchEvent(new Event(kind, { bubbles: true }));
+    window.openNow();
+    return [asked, document.body.dataset.asked];
+  });
+  assert.notEqual(before, after);
+  await doing(other, "done");
+  await context.close();
+  assert.equal(await end(), 0);
+});
+
 test("by keyboard alone: points typed, requirements set, a point moved, a linkage chosen", async () => {
   const { address, end } = await studio("--port", "18473");
   const { page, said, context } = await opened(address);

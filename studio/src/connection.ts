@@ -22,7 +22,9 @@ export class Connection {
       this.socket = socket;
       this.lost = 0;
       this.state(true, 0);
-      if (this.last) this.send({ ...this.last, moving: false });
+      // What waits is later than what went out last.
+      const ask = this.waiting ?? this.last;
+      if (ask) this.send({ ...ask, moving: false });
     });
     socket.addEventListener("message", (event) => this.take(event.data as string));
     socket.addEventListener("close", () => {
