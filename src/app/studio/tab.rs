@@ -6,6 +6,7 @@
 
 use super::details::Finished;
 use super::messages::{Answer, Ask, Counted, Doing, Shown, Sure};
+use super::pin_map::PinMap;
 use super::status::{ended, under_way};
 use crate::app::job::run::{Context, Job, run};
 use crate::judge::assess::assess;
@@ -124,6 +125,8 @@ struct Tab {
     exact: Option<(Counted, Vec<Shown>)>,
     /// The changes that would help if nothing is acceptable.
     helps: Vec<Relaxation>,
+    /// The map of the places of a pin, where it is asked for.
+    map: Option<PinMap>,
     /// The version that the latest edit says that it is; 0: it cannot be read.
     version: u64,
     /// The latest edit, if it makes a problem.
@@ -187,8 +190,9 @@ impl Tab {
                 (None, all.map(Shown::numbered).collect())
             }
         };
-        let (version, said, relaxations) = (self.version, said.into(), self.helps.clone());
-        let answer = Answer { version, doing, said, sure, progress, candidates, nine, relaxations };
+        let (version, said) = (self.version, said.into());
+        let (relaxations, map) = (self.helps.clone(), self.map.clone());
+        let answer = Answer { version, doing, said, sure, progress, candidates, nine, relaxations, map };
         if let Ok(text) = serde_json::to_string(&answer) {
             self.told.send_replace(text.into());
         }
@@ -199,6 +203,7 @@ impl Tab {
         self.cancel();
         self.edits += 1;
         self.helps.clear();
+        self.map = None;
         self.version = 0;
         let ask: Ask = match serde_json::from_str(text) {
             Ok(ask) => ask,
@@ -210,6 +215,7 @@ impl Tab {
             Ok(read) => read,
             Err(why) => return self.refuse(why.to_string()),
         };
+        self.map = if ask.map { PinMap::of(&problem) } else { None };
         if ask.fresh {
             self.session.clear();
         }
@@ -402,6 +408,45 @@ mod tests {
         tab.surviving(|tab| tab.take(r#"{"version":7,"points":[[0,0],[1,1],[2,0]]}"#));
         let said = answer(&told);
         assert_eq!((said["doing"].as_str(), said["version"].as_u64()), (Some("following"), Some(7)));
+    }
+
+    #[test]
+    fn the_poses_of_a_body_are_followed_with_the_map_of_its_pins_where_it_is_asked_for() {
+        let (mut tab, told) = tab();
+        let ask = |version: u64, x: f64, map: bool| {
+            serde_json::json!({
+                "version": version,
+                "points": [[-150.0 + x, 0.0], [-86.0, 40.0], [-21.0, 82.0], [62.0, 125.0]],
+                "body": { "angle_deg": [0.0, -12.0, -30.0, -53.0] },
+                "map": map,
+            })
+            .to_string()
+        };
+        tab.take(&ask(1, 0.0, false));
+        assert!(answer(&told)["map"].is_null());
+        let (_, problem) = tab.asked.as_ref().expect("a problem");
+        let found = first_look(problem, &Budget::new(&AtomicBool::new(false), None));
+        tab.session.join(problem, found);
+        tab.take(&ask(2, 1.0, true));
+        let said = answer(&told);
+        let best = &said["candidates"][0];
+        assert!(best["angle"]["max_deg"].as_f64().is_some_and(|deg| deg < 0.1), "{best}");
+        assert!(best["frame_deg"].is_number());
+        assert_eq!(said["map"]["levels"].as_str().map(str::len), Some(81 * 81));
+    }
+
+    #[test]
+    fn the_pairs_of_a_function_are_followed() {
+        let (mut tab, told) = tab();
+        tab.take(r#"{"version":1,"points":[[0,0],[20,5],[40,15],[60,40]],"function":{"sense":"same"}}"#);
+        let (_, problem) = tab.asked.as_ref().expect("a problem");
+        let found = first_look(problem, &Budget::new(&AtomicBool::new(false), None));
+        tab.session.join(problem, found);
+        tab.take(r#"{"version":2,"points":[[0,0],[20,6],[40,15],[60,40]],"function":{"sense":"same"}}"#);
+        let best = &answer(&told)["candidates"][0];
+        assert!(best["output_offset_deg"].is_number() && best["sense"] == "same", "{best}");
+        tab.take(r#"{"version":3,"points":[[0,0]],"function":{}}"#);
+        assert!(answer(&told)["said"].as_str().is_some_and(|said| said.contains("2 to 1000 pairs")));
     }
 
     /// Nine points of which the last two lie `apart`.
