@@ -16,8 +16,8 @@ use crate::synthesis::continuation::Exact;
 use crate::synthesis::live::nine::Nine;
 use crate::synthesis::live::{Session, first_look};
 use crate::synthesis::{Budget, HitsSoFar, Progress};
-use crate::task::Problem;
 use crate::task::spec::Method;
+use crate::task::{Problem, TaskKind};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -31,6 +31,9 @@ const TELL_EVERY: Duration = Duration::from_millis(120);
 
 const LOOKING: &str = "Looking for the first linkages.";
 const SEARCHING: &str = "Searching for better ones.";
+/// The end of a search that found nothing acceptable while a linkage that followed the hand is.
+const FOLLOWED_ONLY: &str = "Not sure: the linkages that followed your hand are all that meet what was asked; the search \
+                             from new starts found none.";
 /// The message after a thread has panicked.
 pub(super) const BUG: &str = "this is a bug of linkwright: please report it";
 
@@ -306,8 +309,14 @@ impl Tab {
                 if let Some(exact) = record.exact.as_ref().filter(|_| self.exact.is_some()) {
                     self.exact = Some(all_of(problem, exact));
                 }
+                let is_path = problem.spec().task.kind() == TaskKind::Path;
+                let found = record.candidates.first().is_some_and(|best| best.accepted);
                 self.helps = record.relaxations;
-                self.session.join(problem, record.candidates);
+                let best = self.session.join(problem, record.candidates).first();
+                if !is_path && !found && best.is_some_and(|best| best.accepted) {
+                    self.helps.clear();
+                    return self.answer(Doing::Done, FOLLOWED_ONLY, None, Some(Sure::Not));
+                }
                 self.answer(Doing::Done, said, None, sure);
             }
             News::Failed(why) => self.tell(Doing::Refused, why, None),
@@ -376,6 +385,7 @@ fn searched(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::{Evaluations, ProblemRecord, Reason};
 
     #[test]
     fn the_latest_edit_wins_and_progress_does_not_pile_up() {
@@ -433,6 +443,29 @@ mod tests {
         assert!(best["angle"]["max_deg"].as_f64().is_some_and(|deg| deg < 0.1), "{best}");
         assert!(best["frame_deg"].is_number());
         assert_eq!(said["map"]["levels"].as_str().map(str::len), Some(81 * 81));
+    }
+
+    #[test]
+    fn a_search_of_poses_that_finds_nothing_says_that_what_followed_the_hand_is_acceptable() {
+        let (mut tab, told) = tab();
+        tab.take(
+            r#"{"version":1,"points":[[-150,0],[-86,40],[-21,82],[62,125]],"body":{"angle_deg":[0,-12,-30,-53]}}"#,
+        );
+        let (job, problem) = tab.asked.clone().expect("a problem");
+        let found = first_look(&problem, &Budget::new(&AtomicBool::new(false), None));
+        assert!(found[0].accepted);
+        let refused = Candidate { accepted: false, ..found[0].clone() };
+        let ended = |candidates| {
+            let asked = ProblemRecord::try_from(job.clone()).expect("a problem's record");
+            let record = Record::new(asked, Vec::new(), Reason::Stalled, Evaluations::default(), candidates);
+            News::Finished(Box::new(record), None)
+        };
+        tab.hear(tab.edits, ended(vec![refused.clone()]));
+        assert!(answer(&told)["said"].as_str().is_some_and(|said| said.starts_with("Nothing acceptable")));
+        tab.session.clear();
+        tab.session.join(&problem, found);
+        tab.hear(tab.edits, ended(vec![refused]));
+        assert_eq!(answer(&told)["said"].as_str(), Some(FOLLOWED_ONLY));
     }
 
     #[test]
