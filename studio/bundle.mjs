@@ -1,6 +1,7 @@
 #!/usr/bin/env node
 // Makes the page in the folder that is named, as short as it can be: app.js of src/main.ts, style.css of the player's and
-// the studio's styles, index.html of src/index.html.
+// the studio's styles, index.html of src/index.html; more.js of src/more.ts and more.css, which the page loads when they are
+// first needed.
 //
 // Members of classes get short names where every use of the name in the page is one of a class's member, as the types say:
 // what is sent, kept or read from outside keeps its name. So do the styles' own properties, which no script names.
@@ -23,15 +24,21 @@ function program() {
 
 /** Files whose interfaces lie between parts of the page: what has them is neither sent nor kept. */
 const INSIDE = [
+  "bodies",
   "board",
   "boxes",
   "build",
+  "buildtab",
   "byhand",
   "controls",
   "desk",
   "examples",
   "exchange",
   "grab",
+  "graph",
+  "kit",
+  "motion",
+  "pinmap",
   "pointers",
   "scene",
   "store",
@@ -105,22 +112,37 @@ function names() {
 const common = { target: "es2022", charset: "utf8", minify: true, logLevel: "warning" };
 const folder = process.argv[2];
 
-const built = await build({
-  ...common,
-  entryPoints: [here("src/main.ts")],
-  write: false,
-  bundle: true,
-  format: "iife",
-  mangleProps: new RegExp(`^(${names().join("|")})$`),
-});
-writeFileSync(join(folder, "app.js"), shortenScript(built.outputFiles[0].text));
+const mangleProps = new RegExp(`^(${names().join("|")})$`);
+/** The short names of members: what one script hands to the other has one name in both. */
+let mangleCache = {};
+for (const [name, entry] of [
+  ["app.js", "src/main.ts"],
+  ["more.js", "src/more.ts"],
+]) {
+  const built = await build({
+    ...common,
+    entryPoints: [here(entry)],
+    write: false,
+    bundle: true,
+    format: "iife",
+    mangleProps,
+    mangleCache,
+  });
+  ({ mangleCache } = built);
+  writeFileSync(join(folder, name), shortenScript(built.outputFiles[0].text));
+}
 writeFileSync(join(folder, "index.html"), shortenPage(readFileSync(here("src/index.html"), "utf8")));
 
 const styles = ["../src/report/html/player/player.css", "src/studio.css", "src/desk.css"];
 const css = styles.map((name) => readFileSync(here(name), "utf8")).join("");
 const properties = [...new Set(css.match(/--[a-z][\w-]*/g))];
-const short = css
-  .replace(/--[a-z][\w-]*/g, (name) => `--${properties.indexOf(name).toString(36)}`)
-  .replace(/(--\w+:) +/g, "$1")
-  .replace(/#([\da-f])\1([\da-f])\2([\da-f])\3(?![\da-f])/g, "#$1$2$3");
-writeFileSync(join(folder, "style.css"), (await transform(short, { ...common, loader: "css" })).code);
+for (const [name, text] of [
+  ["style.css", css],
+  ["more.css", readFileSync(here("src/more.css"), "utf8")],
+]) {
+  const short = text
+    .replace(/--[a-z][\w-]*/g, (property) => `--${properties.indexOf(property).toString(36)}`)
+    .replace(/(--\w+:) +/g, "$1")
+    .replace(/#([\da-f])\1([\da-f])\2([\da-f])\3(?![\da-f])/g, "#$1$2$3");
+  writeFileSync(join(folder, name), (await transform(short, { ...common, loader: "css" })).code);
+}

@@ -77,6 +77,8 @@ export async function opened(browser, address, { context: shared, ...options } =
     for (const [path, file, contentType] of [
       ["/app.js", "app.js", "text/javascript"],
       ["/style.css", "style.css", "text/css"],
+      ["/more.js", "more.js", "text/javascript"],
+      ["/more.css", "more.css", "text/css"],
       ["/", "index.html", "text/html; charset=utf-8"],
     ]) {
       await context.route(

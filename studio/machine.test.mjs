@@ -326,7 +326,7 @@ test("the gallery moves and loads with one click, and covers no middle of the bo
   await page.waitForTimeout(250);
   assert.notEqual(await bar(), before, "it moves");
   const names = await page.locator("#gallery .example").count();
-  assert.ok(names >= 6 && names <= 8);
+  assert.ok(names >= 12 && names <= 16);
   const covers = await page.evaluate(() => {
     const board = document.querySelector("#board").getBoundingClientRect();
     const gallery = document.querySelector("#gallery").getBoundingClientRect();

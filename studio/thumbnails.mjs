@@ -16,7 +16,7 @@ await answers.send("Network.enable");
 answers.on("Network.webSocketFrameReceived", ({ response }) => {
   latest = JSON.parse(response.payloadData);
 });
-const names = await page.locator("#gallery .example").allTextContents();
+const names = await page.locator("#gallery .example:has(svg)").allTextContents();
 const digits = (value) =>
   typeof value === "number" ? Number(value.toPrecision(5)) : Array.isArray(value) ? value.map(digits) : value;
 for (const name of names) {

@@ -5,6 +5,7 @@ import { Keys } from "./boardkeys";
 import { boxShapes, boxSpots, type Corner } from "./boxes";
 import { Figure, type Moving } from "./figures";
 import type { Joint, Pose } from "./grab";
+import { more } from "./kit";
 import { unitAfter } from "./labels";
 import { pointShapes } from "./marks";
 import type { Box, Point, Task } from "./messages";
@@ -45,9 +46,9 @@ export class Board implements Surface {
   /** The largest extent that is asked for, around the path. */
   private ghost = shape("rect", { class: "ghost" });
   private grips = shape("g");
-  private marks = shape("g");
+  readonly marks = shape("g");
   private stroke = shape("path", { class: "stroke" });
-  private boxGroup = shape("g");
+  readonly boxGroup = shape("g");
   private sketch = shape("rect", { class: "pivot-box", visibility: "hidden" });
   private scaleBar = shape("g");
   private ghosts: Figure[] = [];
@@ -59,8 +60,8 @@ export class Board implements Surface {
   private overview = new Overview();
   private closer = element("button", { id: "closer", hidden: "" }, ["a closer one"]) as HTMLButtonElement;
   task: Task | null = null;
-  private moving: Moving | null = null;
-  private isFor = true;
+  moving: Moving | null = null;
+  isFor = true;
   private pinned: Pinned[] = [];
   corner: Corner | null = null;
   private part = 0;
@@ -166,9 +167,11 @@ export class Board implements Surface {
   }
 
   /** Brings the path of a problem that was opened into view, and its boxes as far as the path stays large. */
-  fitPath({ points, pivots_in, footprint_in }: Task) {
+  fitPath({ points, pivots_in, footprint_in, body }: Task) {
     const path = boxOf(points.filter((p) => p.every(Number.isFinite)));
-    const all = path && view.joined([path, pivots_in, footprint_in].filter((box): box is Box => !!box));
+    const reach = Math.max(0, ...(body?.outline ?? []).flat().map(([x, y]) => Math.hypot(x, y)));
+    const bodies = path?.map((side, i) => side + (i < 2 ? -reach : reach)) as Box | undefined;
+    const all = path && view.joined([path, bodies, pivots_in, footprint_in].filter((box): box is Box => !!box));
     if (path && all) this.look(view.onPath(this.frame, path, all));
   }
 
@@ -233,6 +236,7 @@ export class Board implements Surface {
     if (this.isWalker) this.second.pose((part + 0.5) % 1);
     if (this.tool === "grab") this.drawGrips();
     for (const ghost of this.ghosts) ghost.pose(part);
+    more.kit?.posed(part);
   }
 
   private draw() {
@@ -244,7 +248,16 @@ export class Board implements Surface {
     this.held = held;
     this.underlay.draw(this.toPixel);
     const isSeen = spots.some(([x, y]) => x >= 0 && y >= 0 && x <= this.width && y <= this.height);
-    const invites = spots.length === 0 ? "Draw a path here" : isSeen ? "" : "The path is out of sight: Show all";
+    const invites =
+      spots.length > 0
+        ? isSeen
+          ? ""
+          : "The path is out of sight: Show all"
+        : task.function
+          ? ""
+          : task.body
+            ? "Click where the body lies, drag its direction"
+            : "Draw a path here";
     const empty = invites
       ? [shape("text", { class: "invitation", x: px(this.width / 2), y: px(this.height / 2) }, [invites])]
       : [];
@@ -267,6 +280,7 @@ export class Board implements Surface {
     this.mechanism.show(this.moving, this.toPixel);
     this.boxGroup.replaceChildren(...boxShapes(task, this.toPixel, this.corner));
     const passed = this.moving?.passed ?? [];
+    more.kit?.drawn();
     const map = this.overview.show(boxOf(task.points), this.moving, this.window, this.frame);
     this.hand.drawnAt([...boxSpots(task, this.toPixel), ...map], [...spots, ...passed.map(this.toPixel)]);
     const length = roundLength((0.2 * this.width) / this.view.scale);

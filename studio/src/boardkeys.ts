@@ -2,6 +2,7 @@
 
 import { figure } from "../../src/report/html/player/svg.mjs";
 import { inWords as cornerInWords, cornerOf, LEAST, nextCorner, resized } from "./boxes";
+import { more } from "./kit";
 import { unitAfter } from "./labels";
 import type { Hand, Surface } from "./surface";
 import { sizeOf, toleranceAt } from "./task";
@@ -61,7 +62,7 @@ export class Keys {
       this.hand.grasp();
       this.hand.drag(this.on.selected, [x + way[0] * step, y + way[1] * step], true);
       this.tellPoint();
-    } else return;
+    } else if (!more.kit?.press(event)) return;
     event.preventDefault();
   }
 

@@ -7,7 +7,7 @@ import { element, figure, shape } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
 import { changing } from "./focus";
-import { labelled } from "./labels";
+import { labelled, nounOf } from "./labels";
 import type { Task } from "./messages";
 
 const FORMATS: [string, string, string][] = [
@@ -269,7 +269,7 @@ export class DetailsPanel {
     const { points, closed, tolerance } = details;
     this.player = new AnglesPlayer(this.stage, this.charts, {
       unit: details.unit ?? null,
-      target: { points, closed, tolerance },
+      target: { points, closed, tolerance, noun: nounOf(this.of?.task ?? {}) },
       transmissionMin: details.transmission_deg_min ?? null,
     } as never);
     this.player.show({ key: "", name: "", ...shown });

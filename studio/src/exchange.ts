@@ -2,6 +2,7 @@
 
 import { whyClosed } from "./api";
 import { Connection } from "./connection";
+import { more } from "./kit";
 import type { Answer } from "./messages";
 import { Pace } from "./pace";
 import type { How, Store } from "./store";
@@ -59,6 +60,7 @@ export class Exchange {
       version,
       ...(moving ? { moving, held } : {}),
       ...(fresh ? { fresh } : {}),
+      ...(more.map ? { map: true } : {}),
       ...(from ? { from } : {}),
     });
   }

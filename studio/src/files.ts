@@ -2,6 +2,7 @@
 
 import * as api from "./api";
 import type { Linkage } from "./grab";
+import { more } from "./kit";
 import type { Point, Reading, Task } from "./messages";
 import { ofText, resampled } from "./target";
 import { roundTo, settled, sizeOf, taskOf, withPoints } from "./task";
@@ -65,9 +66,15 @@ export async function taskOfText(
   const { ask, whole, warnings } = reading;
   const said = [`${ask.points.length} points`, ...warnings].join(". ");
   if (whole) return { task: taskOf(ask), from: ask.from, said: `The problem ${ask.name}: ${said}` };
-  const { tolerances, weights, timing, unit } = ask;
+  const { tolerances, weights, timing, unit, body, function: pairs } = ask;
+  if (kind === "svg" && task.body && more.kit)
+    return { task: more.kit.outlined(task, ask.points as Point[]), said: "the outline of the body" };
   const next: Task = {
-    ...withPoints({ ...task, timing: undefined }, ask.points, kind === "svg" ? ask.closed === true : task.closed),
+    ...withPoints(
+      { ...task, timing: undefined, body, function: pairs },
+      ask.points,
+      kind === "svg" ? ask.closed === true : task.closed,
+    ),
     weights,
     timing,
     name: ask.name ?? task.name,
@@ -86,7 +93,7 @@ const EVENLY = 200;
 /** A task with fewer points, evenly along the path, where it has more than can be searched; else null. */
 export function evenly(task: Task): Task | null {
   if (task.points.length <= MOST_POINTS) return null;
-  const { timing: _t, tolerances: _e, weights: _w, ...rest } = task;
+  const { timing: _t, tolerances: _e, weights: _w, body: _b, ...rest } = task;
   const size = sizeOf(task.points);
   const points = resampled(task.points, EVENLY, task.closed);
   return settled({ ...rest, points: points.map((p) => p.map((x) => roundTo(x, size, 7)) as Point) });

@@ -16,16 +16,24 @@ const LABELS: Record<string, [label: string, row?: string]> = {
   branch: ["passes no toggle on the way", "branch"],
   closing: ["comes back to the start of a closed path without reversing", "return to the first point"],
   tolerance: ["largest error at a point", "error at the worst point"],
+  tolerance_deg: ["largest error of the angle"],
 };
 /** A unit as it is written after a length. */
 export const unitAfter = (unit: string | null | undefined) => (unit ? ` ${unit}` : "");
+
+/** The unit of a task's errors: those of a function are degrees. */
+export const errorUnit = (task: { unit?: string; function?: object }) => (task.function ? "°" : unitAfter(task.unit));
+
+/** What one of a task's targets is called. */
+export const nounOf = (task: { body?: object; function?: object }) =>
+  task.body ? "pose" : task.function ? "pair" : "point";
 
 const ROWS = new Map(Object.values(LABELS).map(([label, row]) => [row, label]));
 const SIDES: Record<string, string> = { xmin: "left", ymin: "bottom", xmax: "right", ymax: "top" };
 
 /** What a key of a problem file or of an answer asks: `pivots_in`, `require.type`, `design.a`. */
 export function labelOf(key: string): string {
-  const [name] = LABELS[key.replace(/^(require|task\.path)\./, "")] ?? [];
+  const [name] = LABELS[key.replace(/^(require|task\.\w+)\./, "")] ?? [];
   return name ?? key.replace(/^design\.(A|B)[xy]$/, "place of $1").replace(/^design\./, "bounds of ");
 }
 
@@ -36,7 +44,7 @@ export function labelled(text: string): string {
   // A list of nothing but keys.
   if (text.startsWith("not: ")) return text.replace(/[\w.]+(?=,|$)/g, labelOf);
   return text
-    .replace(/`?\b(require\.\w+|task\.path\.tolerance|[a-z]+_[a-z_]+)\b`?/g, (all, key) => {
+    .replace(/`?\b(require\.\w+|task\.\w+\.tolerance|[a-z]+_[a-z_]+)\b`?/g, (all, key) => {
       const label = labelOf(key);
       return label === key ? all : label;
     })

@@ -4,7 +4,7 @@
 import { figure } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import { Board } from "./board";
-import { BuildPanel } from "./build";
+import { BuildTab } from "./buildtab";
 import { ByHand } from "./byhand";
 import { listenToControls } from "./controls";
 import { Desk } from "./desk";
@@ -16,7 +16,8 @@ import type { Linkage } from "./grab";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
 import { byId, input } from "./ids";
-import { labelled, unitAfter } from "./labels";
+import { type Kit, kitFor, more } from "./kit";
+import { errorUnit, labelled, nounOf } from "./labels";
 import { type Place, remember, remembered } from "./memory";
 import type { Answer, AnyAsk, Point, Shown, Task } from "./messages";
 import { nameFault } from "./names";
@@ -57,7 +58,7 @@ const VIEW_RESTS = 300;
 /** Milliseconds for which the controls wait while the hand moves. */
 const CONTROLS_WAIT = 100;
 
-const TOOLS: Tool[] = ["draw", "points", "grab", "pivots_in", "footprint_in", "photo-move", "photo-scale"];
+const TOOLS: Tool[] = ["draw", "points", "poses", "grab", "pivots_in", "footprint_in", "photo-move", "photo-scale"];
 const CORNERS = "Drag from corner to corner.";
 /** What a tool is for, said when it is taken for the first time. */
 const TOOL_SAID: Partial<Record<Tool, string>> = {
@@ -145,7 +146,12 @@ class Page {
     fit: (kept, from) => this.fitAgain(kept, from),
     say: (text) => this.said.refuse(text),
   });
-  private gallery = new Gallery(byId("gallery"), byId<HTMLButtonElement>("examples"), (example) => this.load(example));
+  private gallery = new Gallery(
+    byId("gallery"),
+    byId<HTMLButtonElement>("examples"),
+    (example) => this.load(example),
+    (name) => void this.kit((kit) => this.load(kit.example(name))),
+  );
   private scene = new Scene({
     board: this.board,
     strip: this.strip,
@@ -156,19 +162,30 @@ class Page {
     turn: input("turn"),
     task: () => this.task,
   });
-  private build = new BuildPanel(
-    byId("build"),
-    this.desk.host,
-    () => this.scene.rank(),
-    () => this.board.isWalker,
-    () => this.keep(),
+  private build = new BuildTab(() =>
+    this.kit(
+      ({ panel: Panel }) =>
+        new Panel(
+          byId("build"),
+          this.desk.host,
+          () => this.scene.rank(),
+          () => this.board.isWalker,
+          () => this.keep(),
+        ),
+    ),
   );
-  private tabs = new Tabs(document.querySelector(".rail") as HTMLElement, (tab) => this.build.open(tab === "build"));
+  private tabs = new Tabs(
+    document.querySelector(".rail") as HTMLElement,
+    (tab) => void this.build.open(tab === "build"),
+  );
 
   constructor() {
     // Pressed again, a tool is laid down.
     for (const tool of TOOLS)
-      byId(`tool-${tool}`).addEventListener("click", () => this.use(this.board.tool === tool ? "draw" : tool));
+      byId(`tool-${tool}`).addEventListener("click", () => {
+        if (tool === "poses") void this.kit((kit) => kit.motion());
+        this.use(this.board.tool === tool ? this.idle : tool);
+      });
     byId("board").addEventListener("pointerdown", () => this.gallery.open(false));
     listenToRequirements({
       now: () => this.task,
@@ -219,6 +236,31 @@ class Page {
     return this.store.task;
   }
 
+  /** Does something with the second script once it is there. */
+  private async kit<What>(act: (kit: Kit) => What): Promise<What> {
+    try {
+      return act(
+        await kitFor(() => ({
+          board: this.board,
+          hand: this.hand(),
+          task: () => this.task,
+          replace: (task, how) => this.replace(task, how),
+          put: (task, how) => this.put(task, how),
+          use: (tool) => this.use(tool),
+          say: (text) => this.say(text),
+          tell: (text) => this.desk.say(text),
+          map: (on) => {
+            more.map = on;
+            this.exchange.send({}, undefined);
+          },
+        })),
+      );
+    } catch (error) {
+      this.desk.say(`A part of the page cannot be loaded: ${api.wordsOf(error)}`, true);
+      throw error;
+    }
+  }
+
   /** What the board tells of the hand on it. */
   private hand(): Hand {
     return {
@@ -238,7 +280,7 @@ class Page {
       remove: (index) => this.replace(tasks.withRemoved(this.task, index)),
       box: (kind, box, last) => {
         this.put({ ...this.task, [kind]: box ?? undefined }, { moving: !last });
-        if (last && this.board.tool === kind) this.use("draw");
+        if (last && this.board.tool === kind) this.use(this.idle);
       },
       tolerance: (index, radius, last) => this.put(tasks.withToleranceAt(this.task, index, radius), { moving: !last }),
       joint: (pose, joint, to) => this.byHand.drag(pose, joint, to),
@@ -258,6 +300,7 @@ class Page {
     this.board.selected = -1;
     this.replace(task, { fresh: true, from });
     this.walk(isWalker);
+    if (task.body || task.function || this.board.tool === "poses") this.use(this.idle);
     this.board.fitPath(task);
   }
 
@@ -270,9 +313,10 @@ class Page {
   private clear() {
     const asked = namesOfAsked(this.task);
     const nothing = tasks.pathAlone({ ...this.task, name: "drawing", source: undefined, points: [], closed: false });
+    const body = this.task.body && { angle_deg: [] };
+    this.replace({ ...nothing, body }, { fresh: true });
     // Points are clicked anew; a box is not drawn beside nothing.
-    if (this.board.tool !== "points") this.use("draw");
-    this.replace(nothing, { fresh: true });
+    if (this.board.tool !== "points") this.use(this.idle);
     this.walk(false);
     this.gallery.open(false);
     this.board.open(this.task.unit);
@@ -307,6 +351,7 @@ class Page {
       // The studio has ended or is busy: what is remembered is shown all the same, and what was given waits for a reload.
     }
     byId("hints").hidden = !this.hints;
+    this.use(this.idle);
     this.walk(isWalker);
     this.board.show(this.task, null, []);
     if (view) this.board.look(view);
@@ -354,13 +399,25 @@ class Page {
     this.lengths = lengths;
   }
 
+  /** What one of the targets is called. */
+  private get noun(): string {
+    return nounOf(this.task);
+  }
+
+  /** The tool that is taken where no other is. */
+  private get idle(): Tool {
+    return this.task.body || this.task.function ? "poses" : "draw";
+  }
+
   private use(tool: Tool) {
     this.board.tool = tool;
     const said = TOOL_SAID[tool];
     if (said !== CORNERS) delete TOOL_SAID[tool];
     if (said && (said === CORNERS || this.task.points.length > 0)) this.desk.say(said);
+    // Of a function nothing is held on the board.
+    const pressed = this.task.function && tool === "poses" ? "" : `tool-${tool}`;
     for (const button of document.querySelectorAll("[id^=tool-]"))
-      button.setAttribute("aria-pressed", String(button.id === `tool-${tool}`));
+      button.setAttribute("aria-pressed", String(button.id === pressed));
     if (tool === "grab") this.grab();
     this.board.redraw();
   }
@@ -384,7 +441,7 @@ class Page {
     this.draw();
     const { shown } = this.byHand;
     if (!shown) {
-      if (this.board.tool === "grab") this.use("draw");
+      if (this.board.tool === "grab") this.use(this.idle);
       if (this.wasPlaying) this.scene.play(true);
       this.wasPlaying = false;
     } else if (before) {
@@ -444,8 +501,14 @@ class Page {
         "The figures published for this problem hold for it as it was opened: they go. Undo brings them back.",
       );
     this.size.show(task);
+    if (!more.kit && (task.body || task.function))
+      void this.kit(() => {
+        this.board.redraw();
+        this.settle();
+      });
     if (isFresh) {
       this.showing.clear();
+      if (this.idle === "poses") this.walk(false);
       this.scene.clear();
       this.sure.show(null, "");
       if (this.byHand.shown) this.byHand.take(null);
@@ -467,7 +530,12 @@ class Page {
       this.draw();
       this.settle();
     }
-    if (this.store.isShort) this.say("A path has at least three points: draw on the board, or click points.");
+    if (this.store.isShort)
+      this.say(
+        task.body
+          ? "A motion has at least two poses: click on the board, and drag to turn."
+          : "A path has at least three points: draw on the board, or click points.",
+      );
     this.exchange.send(how, held);
   }
 
@@ -487,13 +555,14 @@ class Page {
     const best = this.showing.answer?.candidates[0];
     const near =
       best && (best.ability || isExact(best))
-        ? "exactly through the points"
-        : `rms ${figure(best?.rms ?? 0, 3)}${unitAfter(this.task.unit)}`;
+        ? `exactly through the ${this.noun}s`
+        : `rms ${figure(best?.rms ?? 0, 3)}${errorUnit(this.task)}`;
     const head = best ? `Best: ${near}, ${inWords(best)}. ` : "";
     // How the search went stands behind the chip that says how sure it is.
     const [short, ...rest] = answer.said.split("\n");
     const isSaid = answer.sure !== undefined;
     this.sure.show(answer.sure ?? null, isSaid ? [short, ...rest].join("\n") : "");
+    more.kit?.answered(answer);
     if (answer.doing === "done") this.keep();
     this.desk.changed(answer.doing === "done");
     this.build.later();
@@ -581,6 +650,7 @@ class Page {
   /** Brings the controls to what the task says. */
   private fill() {
     const { task } = this;
+    more.kit?.fill(task);
     input("closed").checked = task.closed;
     for (const unit of document.querySelectorAll(".unit")) unit.textContent = task.unit ?? "";
     fillRequirements(task);
@@ -588,11 +658,13 @@ class Page {
     this.table.show(task);
     const text = this.coordinates;
     if (document.activeElement !== text && [this.written, ""].includes(text.value)) {
-      text.value = task.points.map((p) => p.join(", ")).join("\n");
+      const { body } = task;
+      const lines = task.points.map((p, i) => [...p, ...(body ? [body.angle_deg[i]] : [])].join(body ? "," : ", "));
+      text.value = [...(body ? ["x,y,angle_deg"] : []), ...lines].join("\n");
       this.written = text.value;
     }
     byId("point-count").textContent = String(task.points.length);
-    byId("point-word").textContent = task.points.length === 1 ? "point" : "points";
+    byId("point-word").textContent = task.points.length === 1 ? this.noun : `${this.noun}s`;
   }
 
   /** Shows the ground and a second leg, or takes them away. */
@@ -626,6 +698,7 @@ class Page {
     this.walk(then.isWalker);
     this.makeLengths(then.lengths);
     this.put(then.task, {});
+    if (["draw", "poses", "body"].includes(this.board.tool)) this.use(this.idle);
     const { answer, chosen } = then;
     if (answer && answer.candidates.length > 0) this.showing.restore(answer, this.store.version, chosen);
     this.holdAgain(then.byHand);

@@ -14,7 +14,7 @@ export type Box = [number, number, number, number];
 export type Ask = AnyAsk & Required<Pick<AnyAsk, "version" | "name" | "closed" | "types" | "seed">>;
 
 /** What of an Ask is the user's: the rest is the connection's. */
-export type Task = Omit<Ask, "version" | "moving" | "held" | "from" | "fresh">;
+export type Task = Omit<Ask, "version" | "moving" | "held" | "from" | "fresh" | "map">;
 
 /** A linkage with what was asked of it. */
 export interface Solution {

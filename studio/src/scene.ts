@@ -117,7 +117,8 @@ export class Scene {
     const now = task();
     const meant = this.chosen()?.task ?? now;
     board.show(
-      now,
+      // The pairs of a function are no places.
+      now.function ? { ...now, points: [] } : now,
       shown,
       pins.filter(({ moving }) => moving && moving !== shown),
       meant === now || isSamePath(meant, now),

@@ -62,7 +62,7 @@ export class SizeChip {
     const [left, low, right, high] = boxOf(task.points) ?? [0, 0, 0, 0];
     const isWide = right - left >= 1e-3 * (high - low);
     this.length = isWide ? right - left : high - low;
-    this.node.hidden = task.points.length < 2 || !(this.length > 0);
+    this.node.hidden = task.function !== undefined || task.points.length < 2 || !(this.length > 0);
     if (document.activeElement !== this.field) this.field.value = String(Number(this.length.toPrecision(4)));
     this.words.textContent = `${task.unit ? `${task.unit} ` : ""}${isWide ? "wide" : "high"}`;
   }

@@ -25,8 +25,8 @@ export interface Edit {
   isFresh: boolean;
 }
 
-/** So many points are a path. */
-const LEAST_POINTS = 3;
+/** So many points are a path, and so many poses a motion. */
+const [LEAST_POINTS, LEAST_POSES] = [3, 2];
 
 export class Store<State> {
   /** The number of the latest edit. */
@@ -46,7 +46,8 @@ export class Store<State> {
 
   /** Whether there are too few points to be searched. */
   get isShort(): boolean {
-    return this.task.points.length < LEAST_POINTS;
+    const { points, body, function: pairs } = this.task;
+    return points.length < (body || pairs ? LEAST_POSES : LEAST_POINTS);
   }
 
   /** Takes an edited task in place of the one that stands. */

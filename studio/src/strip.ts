@@ -4,7 +4,7 @@ import { element, figure, setAll } from "../../src/report/html/player/svg.mjs";
 import { isTheSame } from "./choice";
 import type { Moving } from "./figures";
 import { changing, setChildren } from "./focus";
-import { labelOf, unitAfter } from "./labels";
+import { errorUnit, labelOf, nounOf } from "./labels";
 import type { Shown, Solution, Task } from "./messages";
 import { Picture } from "./picture";
 import { longestMax, pinnedFor, sizeOf } from "./task";
@@ -38,10 +38,11 @@ export function isExact({ ability, max, linkage: { a, b, c, d, e } }: Shown): bo
 }
 
 /** How near it comes: to the last digit where it is one of the linkages through nine points. */
-export function nearness(shown: Shown, unit: string | undefined): string {
-  const length = unitAfter(unit);
-  if (isExact(shown)) return "through the points to the last digit";
-  if (!shown.ability) return `rms ${figure(shown.rms, 3)}${length}, at most ${figure(shown.max, 3)}${length}`;
+export function nearness(shown: Shown, task: Task): string {
+  const length = errorUnit(task);
+  if (isExact(shown)) return `through the ${nounOf(task)}s to the last digit`;
+  const turned = task.body && shown.angle ? `; angle at most ${figure(shown.angle.max_deg, 2)}°` : "";
+  if (!shown.ability) return `rms ${figure(shown.rms, 3)}${length}, at most ${figure(shown.max, 3)}${length}${turned}`;
   return `exactly through the points${shown.certified_within === undefined ? "" : ", proved"}; ${shown.ability}`;
 }
 
@@ -106,7 +107,7 @@ class Card {
     const pinned = colour !== undefined;
     setAll(this.node, { class: pinned ? `card pin-${colour}` : "card" });
     const { unit } = task;
-    const texts = [name, `${nearness(shown, unit)}; ${shown.type}`, elsewhere || inWords(shown)];
+    const texts = [name, `${nearness(shown, task)}; ${shown.type}`, elsewhere || inWords(shown)];
     const size = sizeOf(task.points);
     const limits = {
       longest: longestMax(task),
@@ -119,14 +120,17 @@ class Card {
     const extent = few ? extentOf(moving) : undefined;
     const strays = few && task.closed && !exact ? strayInWords(moving, task.points, size) : [];
     const graded: Graded[] = [
-      ...(exact ? [] : [nearnessInWords(shown, size)]),
+      ...(exact || task.function ? [] : [nearnessInWords(shown, size)]),
       ...strays,
       transmissionInWords(shown.transmission_deg),
     ];
     const gait = few && isWalker && moving.cycle.cyclic ? gaitInWords(moving.curve, unit) : "";
-    const plain = [sizeInWords(shown.linkage, size, extent), gait, limited].filter((text) => text !== "");
+    const large = task.function ? "" : sizeInWords(shown.linkage, size, extent);
+    const plain = [large, gait, limited].filter((text) => text !== "");
     // Figures of another path are told as such, and praise nothing.
-    const aside = (text: string) => element("span", {}, [elsewhere ? text.replace("the path", "its path") : text]);
+    const meant = task.body ? "motion" : "path";
+    const named = (text: string) => text.replace("the path", `${elsewhere ? "its" : "the"} ${meant}`);
+    const aside = (text: string) => element("span", {}, [named(text)]);
     const key = JSON.stringify([elsewhere, texts, graded, plain, marks, shown.accepted, chosen, pinned, isKept]);
     if (key === this.key) return;
     this.key = key;
@@ -134,7 +138,7 @@ class Card {
     this.marks.replaceChildren(...marks.map((mark) => element("span", {}, [mark])));
     this.quality.replaceChildren(
       ...graded.map(({ grade, text }) =>
-        elsewhere ? aside(text) : element("span", { class: grade }, [`${SIGNS[grade]} ${text}`]),
+        elsewhere ? aside(text) : element("span", { class: grade }, [`${SIGNS[grade]} ${named(text)}`]),
       ),
       ...plain.map(aside),
     );
@@ -154,7 +158,7 @@ class Card {
   /** Draws what is to be shown, unless it is drawn already. */
   draw(part: number) {
     const { moving, task } = this;
-    if (moving && task) this.picture.show(moving, task.points, task.closed, part);
+    if (moving && task) this.picture.show(moving, task.function ? [] : task.points, task.closed, part);
   }
 
   pose(part: number) {

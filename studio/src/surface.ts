@@ -5,7 +5,7 @@ import type { Joint, Pose } from "./grab";
 import type { Box, Point, Task } from "./messages";
 import type { View } from "./view";
 
-export type Tool = "draw" | "grab" | "points" | BoxKind | "photo-move" | "photo-scale";
+export type Tool = "draw" | "grab" | "points" | "poses" | "body" | BoxKind | "photo-move" | "photo-scale";
 
 export interface Hand {
   /** A new target was drawn. */

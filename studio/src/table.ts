@@ -8,55 +8,63 @@ import { withAdded, withMoved, withRemoved } from "./task";
 /** Rows at once. */
 const PAGE = 40;
 
-type Column = "x" | "y" | "crank_deg" | "tolerance" | "weight";
+type Column = "x" | "y" | "angle_deg" | "crank_deg" | "tolerance" | "tolerance_deg" | "weight";
+type Listed = Exclude<Column, "x" | "y">;
 
 const HEADS: Record<Column, [string, string]> = {
   x: ["x", "x"],
   y: ["y", "y"],
+  angle_deg: ["angle °", "angle of the body in degrees"],
   crank_deg: ["crank °", "crank angle in degrees"],
   tolerance: ["± error", "largest error"],
+  tolerance_deg: ["± angle", "largest error of the angle in degrees"],
   weight: ["weight", "weight"],
 };
+const OF_PAIRS = ["input", "output"];
 
-function columnsOf(task: Task): Column[] {
-  const columns: Column[] = ["x", "y"];
-  if (task.timing) columns.push("crank_deg");
-  if (task.tolerances) columns.push("tolerance");
-  if (task.weights) columns.push("weight");
-  return columns;
-}
+/** The list of a column beside the points. */
+const listOf = ({ body, timing, tolerances, weights }: Task, column: Listed) =>
+  ({
+    angle_deg: body?.angle_deg,
+    crank_deg: timing?.crank_deg,
+    tolerance: tolerances,
+    tolerance_deg: body?.tolerances_deg,
+    weight: weights,
+  })[column];
 
-function valueAt(task: Task, column: Column, row: number): number {
-  switch (column) {
-    case "x":
-      return task.points[row][0];
-    case "y":
-      return task.points[row][1];
-    case "crank_deg":
-      return task.timing?.crank_deg[row] ?? 0;
-    case "tolerance":
-      return task.tolerances?.[row] ?? 0;
-    case "weight":
-      return task.weights?.[row] ?? 1;
-  }
-}
+const columnsOf = (task: Task): Column[] =>
+  (Object.keys(HEADS) as Column[]).filter(
+    (column) => column === "x" || column === "y" || listOf(task, column) !== undefined,
+  );
+
+/** What is in a cell; NaN: nothing, as of the angle of a pose where the place alone counts. */
+const valueAt = (task: Task, column: Column, row: number): number =>
+  column === "x" || column === "y"
+    ? task.points[row][column === "x" ? 0 : 1]
+    : (listOf(task, column)?.[row] ?? Number.NaN);
 
 /** The task with one cell changed. */
 export function withCell(task: Task, column: Column, row: number, value: number): Task {
-  const put = (list: number[] | undefined) => list?.map((old, i) => (i === row ? value : old));
+  const { timing, body } = task;
+  if (column === "x" || column === "y") {
+    const axis = column === "x" ? 0 : 1;
+    const points = task.points.map((p, i): Point => (i === row ? (axis === 0 ? [value, p[1]] : [p[0], value]) : p));
+    return withMoved(task, points);
+  }
+  // Of an angle that is emptied the place alone counts.
+  const put = Number.isNaN(value) ? null : value;
+  const list = listOf(task, column)?.map((old, i) => (i === row ? put : old)) as number[];
   switch (column) {
-    case "x":
-    case "y": {
-      const axis = column === "x" ? 0 : 1;
-      const points = task.points.map((p, i): Point => (i === row ? (axis === 0 ? [value, p[1]] : [p[0], value]) : p));
-      return withMoved(task, points);
-    }
+    case "angle_deg":
+      return { ...task, body: body && { ...body, angle_deg: list } };
+    case "tolerance_deg":
+      return { ...task, body: body && { ...body, tolerances_deg: list } };
     case "crank_deg":
-      return { ...task, timing: task.timing && { ...task.timing, crank_deg: put(task.timing.crank_deg) as number[] } };
+      return { ...task, timing: timing && { ...timing, crank_deg: list } };
     case "tolerance":
-      return { ...task, tolerances: put(task.tolerances) };
+      return { ...task, tolerances: list };
     case "weight":
-      return { ...task, weights: put(task.weights) };
+      return { ...task, weights: list };
   }
 }
 
@@ -116,13 +124,14 @@ export class Table {
     this.from = Math.max(0, Math.min(this.from, Math.floor(Math.max(n - 1, 0) / PAGE) * PAGE));
     const columns = columnsOf(task);
     const rows = Math.min(PAGE, n - this.from);
-    const shape = `${columns.join()} ${this.from} ${rows}`;
-    if (shape !== this.shape) changing(this.body, () => this.build(columns, rows), this.add);
+    const shape = `${columns.join()} ${this.from} ${rows} ${!task.function}`;
+    if (shape !== this.shape) changing(this.body, () => this.build(columns, rows, task), this.add);
     this.shape = shape;
     this.inputs.forEach((cells, i) => {
       cells.forEach((input, j) => {
+        const value = valueAt(task, columns[j], this.from + i);
         if (document.activeElement !== input)
-          input.value = String(Number(valueAt(task, columns[j], this.from + i).toPrecision(9)));
+          input.value = Number.isFinite(value) ? String(Number(value.toPrecision(9))) : "";
       });
     });
     changing(
@@ -137,8 +146,10 @@ export class Table {
     this.label.textContent = `${this.from}–${this.from + rows - 1} of ${n}`;
   }
 
-  private build(columns: Column[], rows: number) {
-    const heads = columns.map((column) => element("th", { scope: "col", title: HEADS[column][1] }, [HEADS[column][0]]));
+  private build(columns: Column[], rows: number, task: Task) {
+    const heads = columns.map((column, i) =>
+      element("th", { scope: "col", title: HEADS[column][1] }, [(task.function && OF_PAIRS[i]) || HEADS[column][0]]),
+    );
     this.head.replaceChildren(
       element("tr", {}, [
         element("th", { scope: "col", title: "Points count from 0, as in the reports" }, ["#"]),
@@ -174,13 +185,16 @@ export class Table {
 
   private take(column: Column, row: number, input: HTMLInputElement) {
     const value = input.valueAsNumber;
-    const wrong = !Number.isFinite(value)
-      ? "is no number"
-      : column === "weight" && value <= 0
-        ? "must be above 0"
-        : column === "tolerance" && value < 0
-          ? "must be 0 or more"
-          : null;
+    const wrong =
+      column === "angle_deg" && input.value === ""
+        ? null
+        : !Number.isFinite(value)
+          ? "is no number"
+          : column === "weight" && value <= 0
+            ? "must be above 0"
+            : column.startsWith("tolerance") && value < 0
+              ? "must be 0 or more"
+              : null;
     if (!this.task) return;
     if (wrong) {
       this.say(`Point ${row}: the ${HEADS[column][1]} ${wrong}.`);

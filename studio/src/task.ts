@@ -9,7 +9,7 @@ export const NINE = 9;
 export const EXACT = "continuation";
 
 export const isExact = (task: Task) => task.method === EXACT;
-export const canBeExact = (task: Task) => task.points.length === NINE && !task.timing;
+export const canBeExact = (task: Task) => task.points.length === NINE && !task.timing && !task.body && !task.function;
 
 /** Crank angles spread evenly over a turn, or over half a turn of an open path. */
 function evenAngles(n: number, closed: boolean): number[] {
@@ -29,6 +29,15 @@ export function settled(task: Task): Task {
     next.tolerances = undefined;
   }
   if (next.weights && next.weights.length !== n) next.weights = undefined;
+  if (next.body && next.body.angle_deg.length !== n) {
+    const { angle_deg, tolerances_deg } = next.body;
+    const fitted = (list: number[]) => next.points.map((_, i) => list[i] ?? list.at(-1) ?? 0);
+    next.body = {
+      ...next.body,
+      angle_deg: fitted(angle_deg),
+      tolerances_deg: tolerances_deg && fitted(tolerances_deg),
+    };
+  }
   if (isExact(next) && !canBeExact(next)) next.method = undefined;
   return next;
 }
@@ -50,7 +59,7 @@ export function longestMax(task: Task): number | null {
   const given = task.kept?.[LONGEST];
   if (given !== undefined) return Number.isFinite(Number(given)) ? Number(given) : null;
   const isBounded = [EXTENT, ...BOUND_LENGTHS].some((key) => task.kept?.[key] !== undefined);
-  return task.timing || isBounded ? null : USUAL_LONGEST * sizeOf(task.points);
+  return task.timing || task.body || task.function || isBounded ? null : USUAL_LONGEST * sizeOf(task.points);
 }
 
 /** The limit in sizes of the path; null: any. */
@@ -112,6 +121,11 @@ export function withLengthsTimes(task: Task, by: number): Task {
     tolerances: task.tolerances?.map(length),
     pivots_in: box(task.pivots_in),
     footprint_in: box(task.footprint_in),
+    body: task.body && {
+      ...task.body,
+      angle_weight: task.body.angle_weight && length(task.body.angle_weight),
+      outline: task.body.outline?.map((line) => line.map((p) => p.map(length) as Point)),
+    },
     kept: task.kept && Object.fromEntries(kept),
   });
 }
@@ -145,6 +159,8 @@ const drawnAlone = (task: Task, points: Point[], closed: boolean): Task => ({
   raw: undefined,
   kept: undefined,
   method: undefined,
+  body: undefined,
+  function: undefined,
 });
 
 /** The path alone. */
@@ -175,6 +191,7 @@ export function withAdded(task: Task, index: number, at: Point): Task {
     timing: task.timing && { ...task.timing, crank_deg: insert(angles, angle) as number[] },
     tolerances: insert(task.tolerances, task.tolerances?.[index] ?? task.tolerances?.[0] ?? 0),
     weights: insert(task.weights, 1),
+    body: withAngles(task.body, (list) => insert(list, list[Math.max(index, 0)] ?? 0) as number[]),
   });
 }
 
@@ -186,7 +203,14 @@ export function withRemoved(task: Task, index: number): Task {
     timing: task.timing && { ...task.timing, crank_deg: drop(task.timing.crank_deg) as number[] },
     tolerances: drop(task.tolerances),
     weights: drop(task.weights),
+    body: withAngles(task.body, (list) => drop(list) as number[]),
   });
+}
+
+/** A body whose lists beside the points are changed. */
+function withAngles(body: Task["body"], change: (list: number[]) => number[]): Task["body"] {
+  const each = body?.tolerances_deg;
+  return body && { ...body, angle_deg: change(body.angle_deg), tolerances_deg: each && change(each) };
 }
 
 export function withTiming(task: Task, offset: "none" | "free" | "fixed" | "ground"): Task {
@@ -299,7 +323,9 @@ const isAlike = (one: string, other: string) => {
 };
 
 export const isSamePath = (...both: [Task, Task]) => {
-  const [p, q] = both.map(({ points, closed, unit = "mm" }) => JSON.stringify([points, closed, unit]));
+  const [p, q] = both.map(({ points, closed, unit = "mm", body }) =>
+    JSON.stringify([points, closed, unit, body?.angle_deg]),
+  );
   return isAlike(p, q);
 };
 
@@ -350,7 +376,7 @@ export function unjammed(task: Task, shown: Shown): Instead {
 
 /** The task of an edit: the rest is the connection's. What an edit leaves out has its default. */
 export function taskOf(ask: AnyAsk): Task {
-  const { version: _v, moving: _m, held: _h, from: _l, fresh: _f, ...task } = ask;
+  const { version: _v, moving: _m, held: _h, from: _l, fresh: _f, map: _p, ...task } = ask;
   return {
     ...task,
     name: ask.name ?? "drawing",

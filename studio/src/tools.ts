@@ -2,6 +2,7 @@
 
 import { type BoxKind, between, LEAST, resized } from "./boxes";
 import type { Joint } from "./grab";
+import { more } from "./kit";
 import type { Point } from "./messages";
 import { dragging, type Grip } from "./pointers";
 import type { Hand, Surface } from "./surface";
@@ -35,6 +36,8 @@ export class Tools {
     }
     if (event.shiftKey) return this.pan(event);
     if (this.on.tool === "grab") return joint ? this.grab(joint, event) : this.pan(event);
+    const grip = more.kit?.take(event);
+    if (grip !== undefined) return grip;
     if (this.on.tool === "photo-move" && this.underlay.there) return this.moveUnderlay(event);
     if (this.on.tool === "photo-scale" && this.underlay.there) {
       this.underlay.mark(this.on.at(event));

@@ -9,6 +9,10 @@ export type AngleOffset = "free" | "fixed" | "ground";
  */
 export type DriveKind = "turn" | "rock" | "through" | "none";
 /**
+ * The sense in which the follower turns while the crank turns as its angles are written.
+ */
+export type Sense = "any" | "same" | "opposite";
+/**
  * The types of four-bars, told by which link is the shortest where the Grashof margin is positive.
  */
 export type LinkageType =
@@ -107,10 +111,12 @@ export type JobState = "running" | "done" | "stopped" | "broken-off" | "elsewher
 export type Kind = "csv" | "svg" | "problem" | "report";
 
 export interface Wire {
+  AngleErrorRecord: AngleErrorRecord;
   AngleOffset: AngleOffset;
   Answer: Answer;
   Ask: Ask;
   Best: Best;
+  BodyAsk: BodyAsk;
   Change: Change;
   ClosingPolicy: ClosingPolicy;
   CompareAsk: CompareAsk;
@@ -129,7 +135,9 @@ export interface Wire {
   ExpectedCensus: ExpectedCensus;
   ExportAsk: ExportAsk;
   Form: Form;
+  FormulaSpec: FormulaSpec;
   FourBar: FourBar;
+  FunctionAsk: FunctionAsk;
   JobAsk: JobAsk;
   JobList: JobList;
   JobProgress: JobProgress;
@@ -149,10 +157,12 @@ export interface Wire {
   OnePolicy: OnePolicy;
   Opened: Opened;
   OrderPolicy: OrderPolicy;
+  PinMap: PinMap;
   Published: Published;
   RawPoints: RawPoints;
   Reading: Reading;
   Relaxation: Relaxation;
+  Sense: Sense;
   Shown: Shown;
   Source: Source;
   Sure: Sure;
@@ -164,6 +174,23 @@ export interface Wire {
   Unit: Unit;
 }
 /**
+ * The errors of a body's angle over the poses that give one, or of the follower's over the pairs of a function.
+ */
+export interface AngleErrorRecord {
+  /**
+   * Where it is, counted from 0.
+   */
+  max_at: number;
+  /**
+   * The largest, degrees.
+   */
+  max_deg: number;
+  /**
+   * The root of the mean square, degrees.
+   */
+  rms_deg: number;
+}
+/**
  * The answer to an edit. Later answers to the same edit replace earlier ones; answers that were not sent before the
  * next came are dropped.
  */
@@ -173,6 +200,7 @@ export interface Answer {
    */
   candidates: Shown[];
   doing: Doing;
+  map?: PinMap;
   nine?: Counted;
   /**
    * The part of the search's budget that is used, 0 to 1; most searches end before it is used up.
@@ -204,6 +232,7 @@ export interface Shown {
    * Whether every requirement is met and no defect is there that is not allowed.
    */
   accepted: boolean;
+  angle?: AngleErrorRecord;
   /**
    * Through nine points: the proved distance within which there is one exact linkage.
    */
@@ -213,6 +242,10 @@ export interface Shown {
    */
   crank_deg: number[];
   drive: Drive;
+  /**
+   * In a motion: the angle from the direction C -> D to the body's x axis, degrees.
+   */
+  frame_deg?: number;
   /**
    * Longest over shortest link.
    */
@@ -227,6 +260,10 @@ export interface Shown {
    */
   number?: number;
   /**
+   * In a function: the follower's angle from the line A -> B at an output of 0, degrees.
+   */
+  output_offset_deg?: number;
+  /**
    * Its rank, from 1.
    */
   rank: number;
@@ -234,6 +271,7 @@ export interface Shown {
    * The root of the mean squared error.
    */
   rms: number;
+  sense?: Sense;
   /**
    * The assembly (1 or -1) at each point.
    */
@@ -318,6 +356,29 @@ export interface NaturalCoordinates {
   t2: number;
 }
 /**
+ * How nearly the points of a body move on circles while it takes its poses. A fixed pivot is the centre of the circle.
+ */
+export interface PinMap {
+  /**
+   * The places of least error, the best first: the pin in the body's frame and the fixed pivot of its circle.
+   */
+  best: [[number, number], [number, number]][];
+  /**
+   * Places a side of the square.
+   */
+  grid: number;
+  /**
+   * Half the side, a length: the square lies about the body's origin, along its axes.
+   */
+  half: number;
+  /**
+   * One letter a place, row by row from the least y, each from the least x: `#` where the rms distance from the best
+   * circle is a thousandth of the poses' size or less, the next 56 letters of ASCII (to `[`) for errors up to a third
+   * of the size, evenly in their logarithms.
+   */
+  levels: string;
+}
+/**
  * The linkages through nine points, counted.
  */
 export interface Counted {
@@ -378,6 +439,7 @@ export interface Change {
  * An edit: a target and the requirements of its linkage, as a tab has them. All lengths are in `unit`.
  */
 export interface Ask {
+  body?: BodyAsk;
   branch?: OnePolicy;
   circuit?: OnePolicy;
   /**
@@ -399,6 +461,7 @@ export interface Ask {
    */
   fresh?: boolean;
   from?: NaturalCoordinates;
+  function?: FunctionAsk;
   /**
    * The number of a linkage that stays among the answers while it can follow the hand.
    */
@@ -413,6 +476,10 @@ export interface Ask {
    * Longest over shortest link at most.
    */
   link_ratio_max?: number;
+  /**
+   * In a motion: the answers are to hold the map of the places of a pin.
+   */
+  map?: boolean;
   method?: Method;
   /**
    * The hand is still moving: the search waits until it rests.
@@ -432,7 +499,8 @@ export interface Ask {
    */
   pivots_in?: [number, number, number, number];
   /**
-   * The target points in their order: 3 to 1000.
+   * The target points in their order: 3 to 1000; in a motion the places of the body's origin, in a function the pairs
+   * [input, output] in degrees: 2 to 1000.
    */
   points: [number, number][];
   raw?: RawPoints;
@@ -471,6 +539,32 @@ export interface Ask {
    * One positive weight a point.
    */
   weights?: number[];
+}
+/**
+ * The body of a motion. Angles in degrees from the x axis, counter-clockwise positive.
+ */
+export interface BodyAsk {
+  /**
+   * The angle of the body at each point; null where only the place counts.
+   */
+  angle_deg: number[];
+  /**
+   * A length: an angle error of one radian counts like an error of the place of this length; absent: the size of the
+   * points.
+   */
+  angle_weight?: number;
+  /**
+   * The outline of the body in its own frame: lines that are drawn with it, not read.
+   */
+  outline?: [number, number][][];
+  /**
+   * The largest error of the angle accepted at any point.
+   */
+  tolerance_deg?: number;
+  /**
+   * The largest error of the angle accepted at each point, in place of `tolerance_deg`.
+   */
+  tolerances_deg?: number[];
 }
 /**
  * The known answer of a problem, as under `[expect]` in its file.
@@ -570,6 +664,39 @@ export interface Published {
    * r1 ground, r2 crank, r3 coupler, r4 follower, rcx, rcy, x0, y0, theta0 (radians).
    */
   vector?: number[];
+}
+/**
+ * The angles of a function.
+ */
+export interface FunctionAsk {
+  input_offset?: AngleOffset;
+  of?: FormulaSpec;
+  output_offset?: AngleOffset;
+  sense?: Sense;
+  /**
+   * The largest error of the output accepted at any pair, degrees.
+   */
+  tolerance_deg?: number;
+  /**
+   * The largest error of the output accepted at each pair, degrees, in place of `tolerance_deg`.
+   */
+  tolerances_deg?: number[];
+}
+/**
+ * A formula y = f(x) whose values are the outputs.
+ */
+export interface FormulaSpec {
+  /**
+   * The formula in x.
+   */
+  formula: string;
+  /**
+   * The first and the last x.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  over: [number, number];
 }
 /**
  * Points as they were digitised, with the smoothing and resampling that made the target's points of them.

@@ -1,22 +1,25 @@
 //! Converts a tab's edit to the text of a problem file, and a problem file to an edit.
 
+use super::kept::{POLYGON, kept};
 use super::messages::{Ask, Known};
+use super::tables::{ASKED, HEAD, RENAMED, Typed, tables_of};
+use super::targets::{BodyAsk, FunctionAsk};
 use crate::files::diagnostic::Diagnostic;
 use crate::files::problem_file::{self, ProblemFile};
 use crate::mechanism::MAX_MAGNITUDE;
 use crate::task::region::Region;
-use crate::task::spec::{DesignSpec, ProblemSpec, RawPoints, RequireSpec, SolveSpec};
-use crate::task::{AngleOffset, Task, TaskError};
-use serde::Serialize;
+use crate::task::spec::{ProblemSpec, RawPoints};
+use crate::task::{AngleOffset, TaskError, TaskKind};
 use std::collections::BTreeMap;
-use std::fmt::{self, Display};
 
 /// The most points of a target in the studio.
 pub const MOST_POINTS: usize = 1000;
 /// The most digitised points that are carried along with the target that was made from them.
 const MOST_RAW: usize = 2000;
-/// The fewest points of a target in the studio.
+/// The fewest points of a path in the studio.
 const FEWEST_POINTS: usize = 3;
+/// The fewest poses of a motion and pairs of a function.
+const FEWEST_TARGETS: usize = 2;
 
 /// The reason why a problem cannot be opened in the studio.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -27,9 +30,11 @@ pub enum NotHere {
          synth`, or write `samples = 60` in [task.path] to take that many along it"
     )]
     Points(usize),
-    /// The task is a motion.
-    #[error("the studio draws paths, and this task has poses or pairs: run it with `linkwright synth`")]
-    Poses,
+    /// Too few poses of a motion, or pairs of a function, or too many.
+    #[error(
+        "this target has {0} {1}s and the studio shows {FEWEST_TARGETS} to {MOST_POINTS}: run it with `linkwright synth`"
+    )]
+    Targets(usize, &'static str),
     /// Some crank angles are prescribed and others free.
     #[error("the studio has no free crank angles among given ones: run it with `linkwright synth`")]
     PartlyTimed,
@@ -44,6 +49,15 @@ pub enum AskError {
     /// Too few points or too many in an edit.
     #[error("a target has {FEWEST_POINTS} to {MOST_POINTS} points here, and this one has {0}")]
     Points(usize),
+    /// Too few poses or pairs in an edit, or too many.
+    #[error("a target has {FEWEST_TARGETS} to {MOST_POINTS} {1}s here, and this one has {0}")]
+    Targets(usize, &'static str),
+    /// An edit with a body has another number of angles than of points.
+    #[error("{0} poses have {1} angles: `body.angle_deg` has one for each, null where only the place counts")]
+    Angles(usize, usize),
+    /// An edit with a body and a function.
+    #[error("an edit has a `body` or a `function`, not both")]
+    TwoKinds,
     /// Too many points in the text of a problem.
     #[error("at most {MOST_POINTS} points: this target has more")]
     TooManyPoints,
@@ -100,57 +114,9 @@ fn without_line(Diagnostic { message, help, .. }: &Diagnostic) -> String {
     help.as_ref().map_or_else(|| message.clone(), |help| format!("{message}: {help}"))
 }
 
-/// The tables of a problem file in the order in which they are written, each with the keys of an edit as the file has
-/// them; a key of a table within the edit is written without that table's name.
-const TABLES: [(&str, &[&str]); 6] = [
-    ("", &["name", "source", "unit"]),
-    ("task.path", &["points", "closed", "raw.smooth", "raw.samples", "tolerance", "weight"]),
-    ("task.path.timing", &["timing.crank_deg", "timing.offset"]),
-    ("design", &[]),
-    (
-        "require",
-        &[
-            "type",
-            "transmission_deg_min",
-            "link_ratio_max",
-            "pivots_in",
-            "footprint_in",
-            "transmission_over",
-            "order",
-            "direction",
-            "circuit",
-            "branch",
-            "closing",
-        ],
-    ),
-    ("solve", &["seed", "method", "objective"]),
-];
-
-/// The keys of an edit that have other names in a problem file.
-const RENAMED: [(&str, &str); 3] = [("tolerances", "tolerance"), ("weights", "weight"), ("types", "type")];
-
-/// Writes a value as it is typed in problem files, points one a line.
-struct Typed<'a>(&'a toml::Value);
-
-impl Display for Typed<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            // Long whole numbers are integers to TOML, and do not fit.
-            toml::Value::Float(number) if *number != 0.0 && !(1e-6..1e15).contains(&number.abs()) => {
-                write!(f, "{number:e}")
-            }
-            toml::Value::Float(number) => write!(f, "{number}"),
-            toml::Value::Array(list) if list.iter().any(toml::Value::is_array) => {
-                let lines: String = list.iter().map(|item| format!("    {},\n", Typed(item))).collect();
-                write!(f, "[\n{lines}]")
-            }
-            toml::Value::Array(list) => {
-                let items: Vec<String> = list.iter().map(|item| Typed(item).to_string()).collect();
-                write!(f, "[{}]", items.join(", "))
-            }
-            other => write!(f, "{other}"),
-        }
-    }
+/// Returns the pairs of the text of a problem with a function.
+fn pairs_of(text: &str) -> Option<Vec<[f64; 2]>> {
+    Some(problem_file::parse("drawing", text, None, &[]).ok()?.spec.task.pairs())
 }
 
 /// Writes one value of TOML anew; a text that is not exactly one value is refused.
@@ -168,10 +134,45 @@ impl Ask {
     /// [`AskError`] if a part of it cannot be written there: of [`kept`](Ask::kept) everything but keys and values under
     /// `design`, `require` and `solve`.
     pub fn problem_text(&self) -> Result<String, AskError> {
+        let mut text = None;
+        if let Some(by_formula) =
+            self.function.as_ref().and_then(|function| function.by_formula(&self.points))
+        {
+            // The formula is written where it still gives the pairs.
+            text = by_formula
+                .into_iter()
+                .filter_map(|keys| self.text_with(keys).ok())
+                .find(|text| pairs_of(text).as_ref() == Some(&self.points));
+        }
+        let mut text = text.map_or_else(|| self.text_with(self.target_keys()), Ok)?;
+        text.extend(self.expect_text(&text));
+        Ok(text)
+    }
+
+    /// Returns the kind of the task.
+    fn kind(&self) -> TaskKind {
+        match (&self.body, &self.function) {
+            (_, Some(_)) => TaskKind::Function,
+            (Some(_), None) => TaskKind::Motion,
+            (None, None) => TaskKind::Path,
+        }
+    }
+
+    /// Returns the keys of the targets of a motion or of a function; none of a path.
+    fn target_keys(&self) -> toml::Table {
+        let of_body = || self.body.as_ref().map(|body| body.keys(&self.points));
+        let of_function = self.function.as_ref().map(|function| function.keys(&self.points));
+        of_function.or_else(of_body).unwrap_or_default()
+    }
+
+    /// Returns the text of the problem without its known answer, with these keys of its targets.
+    fn text_with(&self, targets: toml::Table) -> Result<String, AskError> {
         let kept = self.kept_lines()?;
-        let given = toml::Value::Table(self.as_table()?);
+        let mut table = self.as_table()?;
+        table.extend(targets);
+        let given = toml::Value::Table(table);
         let mut text = String::from("# Drawn in linkwright's studio.\nformat = 1\n");
-        for (table, keys) in TABLES {
+        for (table, keys) in [HEAD].into_iter().chain(tables_of(self.kind())).chain(ASKED) {
             let typed = keys.iter().filter_map(|path| {
                 let value = path.split('.').try_fold(&given, |value, key| value.get(key))?;
                 let (_, key) = path.rsplit_once('.').unwrap_or(("", path));
@@ -184,7 +185,6 @@ impl Ask {
             }
             text.push_str(&lines);
         }
-        text.extend(self.expect_text(&text));
         Ok(text)
     }
 
@@ -192,7 +192,9 @@ impl Ask {
     fn as_table(&self) -> Result<toml::Table, toml::ser::Error> {
         let raw = self.raw_of_points().cloned();
         let points = raw.as_ref().map_or(&self.points, |raw| &raw.points).clone();
-        let mut table = toml::Table::try_from(Ask { version: 0, points, raw, ..self.clone() })?;
+        let (body, function) = (None, None);
+        let mut table =
+            toml::Table::try_from(Ask { version: 0, points, raw, body, function, ..self.clone() })?;
         for (asked, key) in RENAMED {
             if let Some(value) = table.remove(asked) {
                 table.insert(key.to_owned(), value);
@@ -229,7 +231,9 @@ impl Ask {
                 found.filter(|(_, rest)| plain(rest)).ok_or_else(|| AskError::KeptKey(key.clone()))?;
             Ok((table, format!("{rest} = {}\n", one_value(key, value)?)))
         };
-        self.kept.iter().map(line).collect()
+        // A box takes the place of a polygon.
+        let stays = |(key, _): &(&String, &String)| self.pivots_in.is_none() || *key != POLYGON;
+        self.kept.iter().filter(stays).map(line).collect()
     }
 
     /// Returns the digitised points if the target is still what smoothing and resampling make of them.
@@ -256,9 +260,20 @@ impl Ask {
     /// # Errors
     /// [`AskError`].
     pub fn problem_with_text(&self) -> Result<(ProblemFile, String), AskError> {
-        let n = self.points.len();
-        if !(FEWEST_POINTS..=MOST_POINTS).contains(&n) {
-            return Err(AskError::Points(n));
+        let (n, kind) = (self.points.len(), self.kind());
+        match (&self.body, kind) {
+            (Some(_), TaskKind::Function) => return Err(AskError::TwoKinds),
+            (_, TaskKind::Path) if !(FEWEST_POINTS..=MOST_POINTS).contains(&n) => {
+                return Err(AskError::Points(n));
+            }
+            (_, TaskKind::Path) => {}
+            _ if !(FEWEST_TARGETS..=MOST_POINTS).contains(&n) => {
+                return Err(AskError::Targets(n, kind.noun()));
+            }
+            (Some(body), _) if body.angle_deg.len() != n => {
+                return Err(AskError::Angles(n, body.angle_deg.len()));
+            }
+            _ => {}
         }
         if self.seed > i64::MAX as u64 {
             return Err(AskError::Seed);
@@ -274,28 +289,31 @@ impl Ask {
     /// [`NotHere`] if the studio cannot hold it.
     pub fn of(problem: &ProblemFile) -> Result<Ask, NotHere> {
         let ProblemSpec { task: path, require, solve, .. } = &problem.spec;
-        if path.body.is_some() {
-            return Err(NotHere::Poses);
-        }
         if path.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
             return Err(NotHere::PartlyTimed);
         }
-        let n = path.points.len();
-        if !(FEWEST_POINTS..=MOST_POINTS).contains(&n) {
-            return Err(NotHere::Points(n));
+        let (n, kind) = (path.len(), path.kind());
+        let fewest = if kind == TaskKind::Path { FEWEST_POINTS } else { FEWEST_TARGETS };
+        if !(fewest..=MOST_POINTS).contains(&n) {
+            return Err(match kind {
+                TaskKind::Path => NotHere::Points(n),
+                TaskKind::Motion | TaskKind::Function => NotHere::Targets(n, kind.noun()),
+            });
         }
-        let all = path.tolerance.as_ref().and_then(|each| each.first().copied());
-        let tolerance = all.filter(|all| path.tolerance.iter().flatten().all(|t| t == all));
+        let tolerance = same(path.tolerance.as_deref());
+        let is_function = kind == TaskKind::Function;
         let ask = Ask {
             name: problem.name.clone(),
             source: problem.source.clone(),
             unit: problem.unit,
-            points: path.points.clone(),
+            points: if is_function { path.pairs() } else { path.points.clone() },
             closed: path.closed,
+            body: BodyAsk::of(path),
+            function: FunctionAsk::of(path),
             tolerance,
             tolerances: path.tolerance.clone().filter(|_| tolerance.is_none()),
             weights: path.weight.clone(),
-            timing: path.timing.clone(),
+            timing: path.timing.clone().filter(|_| !is_function),
             raw: path.raw.clone().filter(|raw| raw.points.len() <= MOST_RAW),
             types: require.types.clone(),
             transmission_deg_min: require.transmission_deg_min,
@@ -322,6 +340,8 @@ impl Ask {
             Ok(again) if again.spec == problem.spec => Ok(ask),
             // Too many digitised points to be carried along: the target that was made of them is the same.
             Ok(again) if without_raw(&again.spec) == without_raw(&problem.spec) => Ok(ask),
+            // The same pairs, whose formula is not found again in their ranges.
+            Ok(again) if without_formula(&again.spec) == without_formula(&problem.spec) => Ok(ask),
             Ok(_) => Err(NotHere::Other("it is another when it is read back".into())),
             Err(why) => Err(NotHere::Other(why.to_string())),
         }
@@ -339,68 +359,24 @@ fn told(spec: &ProblemSpec) -> String {
     format!("{hash:016x}")
 }
 
+/// Returns the value that all of a list have.
+pub(super) fn same(list: Option<&[f64]>) -> Option<f64> {
+    let all = list?.first().copied()?;
+    Some(all).filter(|all| list.into_iter().flatten().all(|value| value == all))
+}
+
+fn without_formula(spec: &ProblemSpec) -> ProblemSpec {
+    let mut spec = spec.clone();
+    if let Some(output) = &mut spec.task.output {
+        output.of = None;
+    }
+    spec
+}
+
 fn without_raw(spec: &ProblemSpec) -> ProblemSpec {
     let mut spec = spec.clone();
     spec.task.raw = None;
     spec
-}
-
-/// Returns the dotted keys of a table whose values differ from the defaults, with their values as they are typed.
-fn differing(prefix: &str, table: &toml::Table, default: &toml::Table) -> BTreeMap<String, String> {
-    let mut lines = BTreeMap::new();
-    for (key, value) in table {
-        let key_here = format!("{prefix}.{key}");
-        match (value, default.get(key)) {
-            (same, Some(default)) if same == default => {}
-            (toml::Value::Table(inner), Some(toml::Value::Table(default))) => {
-                lines.extend(differing(&key_here, inner, default));
-            }
-            _ => {
-                lines.insert(key_here, value.to_string());
-            }
-        }
-    }
-    lines
-}
-
-fn table<T: Serialize>(value: &T) -> toml::Table {
-    toml::Table::try_from(value).unwrap_or_default()
-}
-
-/// Returns the keys that a problem gives and the studio has no control for.
-fn kept(spec: &ProblemSpec) -> BTreeMap<String, String> {
-    let ProblemSpec { task, design, require, solve } = spec;
-    let (mut kept, mut usual) = (BTreeMap::new(), RequireSpec::default());
-    if let Ok(task) = task.to_task() {
-        let given = bounds(design, &task);
-        kept = differing("design", &given, &toml::Table::new());
-        usual.longest_max = given.try_into().ok().and_then(|given| require.default_longest(&given, &task));
-        if usual.longest_max.is_some() && require.longest_max.is_none() {
-            kept.insert("require.longest_max".into(), "\"any\"".into());
-        }
-    }
-    let others =
-        [("require", table(require), table(&usual)), ("solve", table(solve), table(&SolveSpec::default()))];
-    for (name, mut given, usual) in others {
-        let shown = TABLES.iter().filter(|(table, _)| *table == name).flat_map(|(_, keys)| *keys);
-        given.retain(|key, _| !shown.clone().any(|shown| *shown == key));
-        kept.extend(differing(name, &given, &usual));
-    }
-    kept
-}
-
-/// Returns the bounds that a problem gives, without those that the target gives by itself.
-fn bounds(design: &DesignSpec, task: &Task) -> toml::Table {
-    let resolved = |mut design: DesignSpec| {
-        design.resolve(task);
-        design
-    };
-    let (all, usual) = (table(design), table(&resolved(DesignSpec::default())));
-    let mut given = all.clone();
-    given.retain(|key, value| usual.get(key) != Some(value));
-    // If leaving out the usual bounds changes others, everything is written.
-    let again = given.clone().try_into().map(resolved);
-    if again.as_ref() == Ok(design) { given } else { all }
 }
 
 #[cfg(test)]
@@ -416,18 +392,14 @@ mod tests {
 
     #[test]
     fn every_problem_of_the_collection_is_carried_through() {
-        let (mut count, mut known) = (0, 0);
-        for folder in ["examples", "literature", "exact"] {
+        let (mut count, mut known, mut kinds) = (0, 0, [0; 3]);
+        for folder in ["examples", "literature", "exact", "motion", "function"] {
             for entry in std::fs::read_dir(root().join("problems").join(folder)).expect("a folder") {
                 let path = entry.expect("an entry").path();
                 if !path.extension().is_some_and(|e| e == "toml" || e == "csv") {
                     continue;
                 }
                 let problem = load_any(&path, &[]).expect("a problem");
-                if problem.spec.task.body.is_some() {
-                    assert!(matches!(Ask::of(&problem), Err(NotHere::Poses)), "{}", path.display());
-                    continue;
-                }
                 if problem.spec.task.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
                     assert!(matches!(Ask::of(&problem), Err(NotHere::PartlyTimed)), "{}", path.display());
                     continue;
@@ -441,6 +413,7 @@ mod tests {
                 assert_eq!(again.spec, problem.spec, "{}", path.display());
                 assert_eq!(again.expect, problem.expect, "{}", path.display());
                 known += usize::from(again.expect.is_some());
+                kinds[again.spec.task.kind() as usize] += 1;
                 assert_eq!(
                     (again.name, again.source, again.unit),
                     (problem.name, problem.source, problem.unit)
@@ -449,6 +422,7 @@ mod tests {
             }
         }
         assert!(count > 20 && known > 10, "{count} {known}");
+        assert!(kinds[1] >= 14 && kinds[2] >= 7, "{kinds:?}");
     }
 
     #[test]
@@ -564,16 +538,6 @@ mod tests {
             let mut asked = ask.clone();
             asked.kept.insert(key.into(), value.into());
             assert!(asked.problem().is_err(), "{key} = {value}");
-        }
-    }
-
-    #[test]
-    fn numbers_of_any_size_come_back() {
-        for value in [0.0, -0.0, 1.5, 1e-7, -3e11, 1e12 / 3.0, 5e-324, 123_456_789.125] {
-            let text = format!("x = {}", Typed(&value.into()));
-            let table: toml::Table = text.parse().expect("TOML");
-            let again = table["x"].as_float().or_else(|| table["x"].as_integer().map(|i| i as f64));
-            assert_eq!(again, Some(value), "{text}");
         }
     }
 }

@@ -1,10 +1,13 @@
 //! The messages between a tab and the studio, as JSON; the schemas are made from these types.
 
+use super::pin_map::PinMap;
+use super::targets::{BodyAsk, FunctionAsk};
 use crate::files::problem_file::Expect;
 use crate::mechanism::{LinkageType, NaturalCoordinates, Unit};
-use crate::record::{Candidate, ExactLinkage, ExactRecord, ProblemRecord, Relaxation};
+use crate::record::{AngleErrorRecord, Candidate, ExactLinkage, ExactRecord, ProblemRecord, Relaxation};
 use crate::report::exact;
 use crate::report::html::Drive;
+use crate::task::Sense;
 use crate::task::spec::{
     ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TaskSpec,
     TimingSpec, TransmissionOver,
@@ -26,11 +29,18 @@ pub struct Ask {
     /// The label of lengths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<Unit>,
-    /// The target points in their order: 3 to 1000.
+    /// The target points in their order: 3 to 1000; in a motion the places of the body's origin, in a function the pairs
+    /// [input, output] in degrees: 2 to 1000.
     pub points: Vec<[f64; 2]>,
     /// Whether the target is a closed curve.
     #[serde(default)]
     pub closed: bool,
+    /// In a motion: the angles of the body at the points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<BodyAsk>,
+    /// In a function: what its angles are measured from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub function: Option<FunctionAsk>,
     /// The largest error accepted at any point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
@@ -109,6 +119,9 @@ pub struct Ask {
     /// The target has nothing to do with the one before: nothing is to follow it.
     #[serde(default, skip_serializing_if = "is_default")]
     pub fresh: bool,
+    /// In a motion: the answers are to hold the map of the places of a pin.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub map: bool,
 }
 
 /// The known answer of a problem, as under `[expect]` in its file.
@@ -129,7 +142,7 @@ fn one() -> u64 {
     1
 }
 
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
@@ -183,6 +196,9 @@ pub struct Answer {
     /// If nothing is acceptable: the changes that help, nearest first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub relaxations: Vec<Relaxation>,
+    /// The map of the places of a pin, where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub map: Option<PinMap>,
 }
 
 /// The linkages through nine points, counted.
@@ -238,6 +254,18 @@ pub struct Shown {
     pub rms: f64,
     /// The largest error.
     pub max: f64,
+    /// In a motion: the angle from the direction C -> D to the body's x axis, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frame_deg: Option<f64>,
+    /// In a function: the follower's angle from the line A -> B at an output of 0, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub output_offset_deg: Option<f64>,
+    /// In a function: the sense in which its outputs count.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sense: Option<Sense>,
+    /// The errors of the body's angle in a motion, of the output in a function.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<AngleErrorRecord>,
     /// Its type.
     #[serde(rename = "type")]
     pub linkage_type: LinkageType,
@@ -287,6 +315,10 @@ impl From<&Candidate> for Shown {
             worst: candidate.error.max_at,
             rms: candidate.error.rms,
             max: candidate.error.max,
+            frame_deg: candidate.frame_deg,
+            output_offset_deg: candidate.output_offset_deg,
+            sense: candidate.sense,
+            angle: candidate.error.of_link().copied(),
             linkage_type: candidate.linkage_type,
             transmission_deg: candidate.transmission_deg.worst,
             link_ratio: candidate.link_ratio,
@@ -337,7 +369,8 @@ pub struct LinkageAsk {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// A points file: a header row with x,y and optionally `crank_deg`, `weight`, `tolerance`.
+    /// A points file: a header row with x,y and optionally `crank_deg`, `weight`, `tolerance`, of poses also `angle_deg`
+    /// and `tolerance_deg`; or with input_deg,output_deg and optionally `weight`, `tolerance_deg`.
     Csv,
     /// A drawing.
     Svg,

@@ -3,6 +3,9 @@
 //! ```text
 //! messages.rs     the messages between a tab and the studio, as JSON
 //! asked.rs        a tab's edit as a problem file, and a problem file as an edit
+//! tables.rs       the tables of a problem file and their keys in an edit; kept.rs: the keys that have no control
+//! targets.rs      the body of a motion and the angles of a function in an edit, as lines of a problem file
+//! pin_map.rs      the map of the places of a pin of a motion's body
 //! reading.rs      texts that are pasted or dropped, read by the readers of files
 //! tab.rs          one tab's work: a mailbox of one, the answers that follow the hand, the search behind them
 //! jobs.rs         long searches that are saved; shelf.rs: the folder of results
@@ -28,14 +31,18 @@ mod guard;
 mod house;
 pub mod job_messages;
 mod jobs;
+mod kept;
 pub mod messages;
 pub mod openapi;
+mod pin_map;
 pub mod reading;
 mod routes;
 mod server;
 mod shelf;
 mod status;
 mod tab;
+mod tables;
+mod targets;
 mod workshop;
 
 pub use asked::{AskError, MOST_POINTS, NotHere};

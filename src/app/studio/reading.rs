@@ -2,6 +2,7 @@
 
 use super::asked::{AskError, MOST_POINTS, NotHere, said};
 use super::messages::{Ask, Kind, Reading, Text};
+use super::targets::{BodyAsk, FunctionAsk};
 use crate::files::problem_file::ProblemFile;
 use crate::files::svg_file::{self, SvgOptions};
 use crate::files::{name, points_file, problem_file};
@@ -17,6 +18,12 @@ pub fn read(text: &Text) -> Result<Reading, AskError> {
     let file = if text.name.trim().is_empty() { "text" } else { text.name.as_str() };
     let blank = || Ask { name: name::from_file(file, "drawing"), seed: 1, ..Ask::default() };
     let (ask, whole, warnings) = match text.kind {
+        Kind::Csv if has_pairs(&text.text) => {
+            let csv = points_file::parse_pairs(file, &text.text).map_err(AskError::Text)?;
+            let function = FunctionAsk { tolerances_deg: csv.tolerance_deg, ..FunctionAsk::default() };
+            let ask = Ask { points: csv.points, weights: csv.weight, function: Some(function), ..blank() };
+            (ask, false, csv.warnings)
+        }
         Kind::Csv => {
             let csv = points_file::parse(file, &text.text).map_err(AskError::Text)?;
             let timing = csv.crank_deg.and_then(|angles| TimingSpec::partly(&angles, AngleOffset::default()));
@@ -24,7 +31,10 @@ pub fn read(text: &Text) -> Result<Reading, AskError> {
                 return Err(NotHere::PartlyTimed.into());
             }
             let tolerances = csv.tolerance;
-            let ask = Ask { points: csv.points, weights: csv.weight, tolerances, timing, ..blank() };
+            let tolerances_deg = csv.tolerance_deg;
+            let body =
+                csv.angle_deg.map(|angle_deg| BodyAsk { angle_deg, tolerances_deg, ..BodyAsk::default() });
+            let ask = Ask { points: csv.points, body, weights: csv.weight, tolerances, timing, ..blank() };
             (ask, false, csv.warnings)
         }
         Kind::Svg => {
@@ -49,6 +59,12 @@ pub fn read(text: &Text) -> Result<Reading, AskError> {
         return Err(NotHere::Points(ask.points.len()).into());
     }
     Ok(Reading { ask, whole, warnings: warnings.iter().map(said).collect() })
+}
+
+/// Returns whether the header of a points file names pairs of a function.
+fn has_pairs(text: &str) -> bool {
+    let header = text.lines().find(|line| !line.trim().is_empty() && !line.trim_start().starts_with('#'));
+    header.is_some_and(|header| header.split(',').any(|cell| cell.trim() == "input_deg"))
 }
 
 /// Returns the edit that asks the problem of a report.
@@ -81,6 +97,14 @@ mod tests {
         assert_eq!(ask.timing.expect("timed").crank_deg, [10.0, 20.0]);
         assert_eq!(ask.tolerances, Some(vec![0.1, 0.2]));
         assert!(warnings.len() == 1 && warnings[0].contains("colour"), "{warnings:?}");
+
+        let csv = "x,y,angle_deg,tolerance_deg\n0,0,10,1\n1,2,,1\n2,2,40,2\n";
+        let Reading { ask, .. } = read(&text(Kind::Csv, csv)).expect("poses");
+        let body = ask.body.expect("a body");
+        assert_eq!(body.angle_deg, [Some(10.0), None, Some(40.0)]);
+        assert_eq!(body.tolerances_deg, Some(vec![1.0, 1.0, 2.0]));
+        let pairs = read(&text(Kind::Csv, "# pairs\ninput_deg,output_deg\n0,0\n20,5\n")).expect("pairs");
+        assert!(pairs.ask.function.is_some() && pairs.ask.points == [[0.0, 0.0], [20.0, 5.0]]);
 
         let circle = r#"<svg width="20mm" viewBox="0 0 10 10"><circle cx="5" cy="5" r="3"/></svg>"#;
         let Reading { ask, .. } =

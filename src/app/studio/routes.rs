@@ -164,6 +164,10 @@ fn routes_of_the_page() -> Vec<Route> {
             .summed_up("The page's script."),
         plain("/style.css", CSS, get(async || content(CSS, include_str!("page/style.css"))))
             .summed_up("The page's style."),
+        plain("/more.js", JS, get(async || content(JS, include_str!("page/more.js"))))
+            .summed_up("A second script, loaded when it is first needed: motions, functions, building."),
+        plain("/more.css", CSS, get(async || content(CSS, include_str!("page/more.css"))))
+            .summed_up("The style of what the second script adds."),
         plain(LIVE, JSON, get(live)).summed_up(
             "A tab's WebSocket: `Ask` messages go in, `Answer` messages come out. Their schemas are at /schemas.json.",
         ),

@@ -6,6 +6,7 @@
 
 use super::details::Finished;
 use super::messages::{Answer, Ask, Counted, Doing, Shown, Sure};
+use super::pin_map::PinMap;
 use super::status::{ended, under_way};
 use crate::app::job::run::{Context, Job, run};
 use crate::judge::assess::assess;
@@ -15,8 +16,8 @@ use crate::synthesis::continuation::Exact;
 use crate::synthesis::live::nine::Nine;
 use crate::synthesis::live::{Session, first_look};
 use crate::synthesis::{Budget, HitsSoFar, Progress};
-use crate::task::Problem;
 use crate::task::spec::Method;
+use crate::task::{Problem, TaskKind};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -30,6 +31,9 @@ const TELL_EVERY: Duration = Duration::from_millis(120);
 
 const LOOKING: &str = "Looking for the first linkages.";
 const SEARCHING: &str = "Searching for better ones.";
+/// The end of a search that found nothing acceptable while a linkage that followed the hand is.
+const FOLLOWED_ONLY: &str = "Not sure: the linkages that followed your hand are all that meet what was asked; the search \
+                             from new starts found none.";
 /// The message after a thread has panicked.
 pub(super) const BUG: &str = "this is a bug of linkwright: please report it";
 
@@ -124,6 +128,8 @@ struct Tab {
     exact: Option<(Counted, Vec<Shown>)>,
     /// The changes that would help if nothing is acceptable.
     helps: Vec<Relaxation>,
+    /// The map of the places of a pin, where it is asked for.
+    map: Option<PinMap>,
     /// The version that the latest edit says that it is; 0: it cannot be read.
     version: u64,
     /// The latest edit, if it makes a problem.
@@ -187,8 +193,9 @@ impl Tab {
                 (None, all.map(Shown::numbered).collect())
             }
         };
-        let (version, said, relaxations) = (self.version, said.into(), self.helps.clone());
-        let answer = Answer { version, doing, said, sure, progress, candidates, nine, relaxations };
+        let (version, said) = (self.version, said.into());
+        let (relaxations, map) = (self.helps.clone(), self.map.clone());
+        let answer = Answer { version, doing, said, sure, progress, candidates, nine, relaxations, map };
         if let Ok(text) = serde_json::to_string(&answer) {
             self.told.send_replace(text.into());
         }
@@ -199,6 +206,7 @@ impl Tab {
         self.cancel();
         self.edits += 1;
         self.helps.clear();
+        self.map = None;
         self.version = 0;
         let ask: Ask = match serde_json::from_str(text) {
             Ok(ask) => ask,
@@ -210,6 +218,7 @@ impl Tab {
             Ok(read) => read,
             Err(why) => return self.refuse(why.to_string()),
         };
+        self.map = if ask.map { PinMap::of(&problem) } else { None };
         if ask.fresh {
             self.session.clear();
         }
@@ -300,8 +309,14 @@ impl Tab {
                 if let Some(exact) = record.exact.as_ref().filter(|_| self.exact.is_some()) {
                     self.exact = Some(all_of(problem, exact));
                 }
+                let is_path = problem.spec().task.kind() == TaskKind::Path;
+                let found = record.candidates.first().is_some_and(|best| best.accepted);
                 self.helps = record.relaxations;
-                self.session.join(problem, record.candidates);
+                let best = self.session.join(problem, record.candidates).first();
+                if !is_path && !found && best.is_some_and(|best| best.accepted) {
+                    self.helps.clear();
+                    return self.answer(Doing::Done, FOLLOWED_ONLY, None, Some(Sure::Not));
+                }
                 self.answer(Doing::Done, said, None, sure);
             }
             News::Failed(why) => self.tell(Doing::Refused, why, None),
@@ -370,6 +385,7 @@ fn searched(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::{Evaluations, ProblemRecord, Reason};
 
     #[test]
     fn the_latest_edit_wins_and_progress_does_not_pile_up() {
@@ -402,6 +418,68 @@ mod tests {
         tab.surviving(|tab| tab.take(r#"{"version":7,"points":[[0,0],[1,1],[2,0]]}"#));
         let said = answer(&told);
         assert_eq!((said["doing"].as_str(), said["version"].as_u64()), (Some("following"), Some(7)));
+    }
+
+    #[test]
+    fn the_poses_of_a_body_are_followed_with_the_map_of_its_pins_where_it_is_asked_for() {
+        let (mut tab, told) = tab();
+        let ask = |version: u64, x: f64, map: bool| {
+            serde_json::json!({
+                "version": version,
+                "points": [[-150.0 + x, 0.0], [-86.0, 40.0], [-21.0, 82.0], [62.0, 125.0]],
+                "body": { "angle_deg": [0.0, -12.0, -30.0, -53.0] },
+                "map": map,
+            })
+            .to_string()
+        };
+        tab.take(&ask(1, 0.0, false));
+        assert!(answer(&told)["map"].is_null());
+        let (_, problem) = tab.asked.as_ref().expect("a problem");
+        let found = first_look(problem, &Budget::new(&AtomicBool::new(false), None));
+        tab.session.join(problem, found);
+        tab.take(&ask(2, 1.0, true));
+        let said = answer(&told);
+        let best = &said["candidates"][0];
+        assert!(best["angle"]["max_deg"].as_f64().is_some_and(|deg| deg < 0.1), "{best}");
+        assert!(best["frame_deg"].is_number());
+        assert_eq!(said["map"]["levels"].as_str().map(str::len), Some(81 * 81));
+    }
+
+    #[test]
+    fn a_search_of_poses_that_finds_nothing_says_that_what_followed_the_hand_is_acceptable() {
+        let (mut tab, told) = tab();
+        tab.take(
+            r#"{"version":1,"points":[[-150,0],[-86,40],[-21,82],[62,125]],"body":{"angle_deg":[0,-12,-30,-53]}}"#,
+        );
+        let (job, problem) = tab.asked.clone().expect("a problem");
+        let found = first_look(&problem, &Budget::new(&AtomicBool::new(false), None));
+        assert!(found[0].accepted);
+        let refused = Candidate { accepted: false, ..found[0].clone() };
+        let ended = |candidates| {
+            let asked = ProblemRecord::try_from(job.clone()).expect("a problem's record");
+            let record = Record::new(asked, Vec::new(), Reason::Stalled, Evaluations::default(), candidates);
+            News::Finished(Box::new(record), None)
+        };
+        tab.hear(tab.edits, ended(vec![refused.clone()]));
+        assert!(answer(&told)["said"].as_str().is_some_and(|said| said.starts_with("Nothing acceptable")));
+        tab.session.clear();
+        tab.session.join(&problem, found);
+        tab.hear(tab.edits, ended(vec![refused]));
+        assert_eq!(answer(&told)["said"].as_str(), Some(FOLLOWED_ONLY));
+    }
+
+    #[test]
+    fn the_pairs_of_a_function_are_followed() {
+        let (mut tab, told) = tab();
+        tab.take(r#"{"version":1,"points":[[0,0],[20,5],[40,15],[60,40]],"function":{"sense":"same"}}"#);
+        let (_, problem) = tab.asked.as_ref().expect("a problem");
+        let found = first_look(problem, &Budget::new(&AtomicBool::new(false), None));
+        tab.session.join(problem, found);
+        tab.take(r#"{"version":2,"points":[[0,0],[20,6],[40,15],[60,40]],"function":{"sense":"same"}}"#);
+        let best = &answer(&told)["candidates"][0];
+        assert!(best["output_offset_deg"].is_number() && best["sense"] == "same", "{best}");
+        tab.take(r#"{"version":3,"points":[[0,0]],"function":{}}"#);
+        assert!(answer(&told)["said"].as_str().is_some_and(|said| said.contains("2 to 1000 pairs")));
     }
 
     /// Nine points of which the last two lie `apart`.
