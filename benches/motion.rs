@@ -26,7 +26,7 @@ use linkwright::internals::numbers::arithmetic::streams::{stream, uniform};
 use linkwright::internals::synthesis::dyads::{circle_fit, pair};
 use linkwright::internals::synthesis::multistart::{LONG_FIT, judged, polish};
 use linkwright::internals::synthesis::{Budget, Context};
-use linkwright::internals::task::forms::start::Start;
+use linkwright::internals::task::forms::start::{AS_WRITTEN, Start};
 use linkwright::internals::task::{Problem, Setting};
 use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
@@ -61,7 +61,8 @@ fn of_random_starts(problem: &Problem, poses: &[(Complex, f64)], starts: u64, se
             let side = CouplerSide::of(pair.shape.offset.im);
             let setting = Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side };
             let design = problem.space(side).design(&pair.shape, pair.frame_angle);
-            let fit = polish(context, Start { design, setting, positions }, LONG_FIT, 5000);
+            let fit =
+                polish(context, Start { design, setting, positions, scales: AS_WRITTEN }, LONG_FIT, 5000);
             let candidate = judged(problem, &fit.end?).filter(|candidate| candidate.accepted)?;
             Some(candidate.error.objective)
         };

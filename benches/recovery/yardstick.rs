@@ -18,7 +18,7 @@ use linkwright::internals::record::Candidate;
 use linkwright::internals::synthesis::multistart::{LONG_FIT, polish, settle_positions};
 use linkwright::internals::synthesis::{Budget, Context};
 use linkwright::internals::task::forms::design_space::{Design, Shape};
-use linkwright::internals::task::forms::start::Start;
+use linkwright::internals::task::forms::start::{AS_WRITTEN, Start};
 use linkwright::internals::task::forms::torus::Positions;
 use linkwright::internals::task::spec::OrderPolicy;
 use linkwright::internals::task::{Problem, Setting};
@@ -92,7 +92,7 @@ fn fit(
     let budget = Budget::new(&cancel, None);
     let context = Context::new(problem, &budget);
     if moves {
-        let start = Start { design, setting, positions };
+        let start = Start { design, setting, positions, scales: AS_WRITTEN };
         let end = polish(context, start, LONG_FIT, u64::MAX).end?;
         Some((end.design, end.positions))
     } else {

@@ -166,7 +166,9 @@ def function(
     Args:
         input_deg: how far the crank has turned, degrees, shape (n,).
         output_deg: how far the follower has turned, degrees, shape (n,). (`output`, a slider's places, is still to come.)
-        of, over, input_range_deg, output_range_deg, samples: a formula such as ``"log10(x)"`` in place of a table.
+        of, over, samples: a formula such as ``"log10(x)"`` in place of a table.
+        input_range_deg, output_range_deg: how far crank and follower turn over the formula's range, degrees; ``"free"``
+            or ``[least, greatest]``, also of a table: that is found too.
         file: a CSV file in place of a table.
         input_offset, output_offset: ``"free"`` or ``"ground"``.
         sense: ``"same"``, ``"opposite"`` or ``"any"``.

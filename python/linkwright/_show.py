@@ -59,6 +59,9 @@ def _target(candidate: Candidate) -> Any:
         sign = -1 if candidate.sense == "opposite" else 1
         ground = np.degrees(np.arctan2(by - ay, bx - ax))
         outputs = np.asarray(task["function"]["output_deg"], dtype=float)
+        # Where the range is free, the task says proportions alone.
+        if "output_range_deg" in candidate.data:
+            outputs = outputs * (candidate.output_range_deg / np.ptp(outputs))
         psi = np.radians(ground + candidate.output_offset_deg + sign * outputs)
         return np.stack([bx + linkage.c * np.cos(psi), by + linkage.c * np.sin(psi)], axis=-1)
     places = task["path"]["points"] if "path" in task else [pose[:2] for pose in task["motion"]["poses"]]

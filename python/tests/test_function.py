@@ -61,8 +61,25 @@ def test_bad_functions_are_refused_with_the_remedy() -> None:
         lw.function([0, 10, 20], [0, 5])
     with pytest.raises(lw.ProblemError, match="unknown name"):
         lw.function(of="y + 1", over=[0, 1], input_range_deg=90, output_range_deg=90)
-    with pytest.raises(lw.ProblemError, match="genetic"):
-        lw.function(INPUTS, OUTPUTS, solve={"method": "genetic"})
+    with pytest.raises(lw.ProblemError, match="free ranges"):
+        lw.function(INPUTS, OUTPUTS, output_range_deg="free", solve={"method": "genetic"})
+
+
+def test_free_ranges_are_found_and_pairs_are_proportions() -> None:
+    result = lw.synth(lw.function(INPUTS, OUTPUTS, input_range_deg=[60, 120], output_range_deg="free", sense="same"))
+    best = result.candidates[0]
+    assert 60 - 1e-6 <= best.input_range_deg <= 120 + 1e-6
+    assert 30 - 1e-6 <= best.output_range_deg <= 180 + 1e-6
+    crank = np.asarray(best.crank_deg)
+    assert np.ptp(crank) == pytest.approx(best.input_range_deg, rel=1e-9)
+    scale = best.output_range_deg / 67
+    linkage = best.linkage
+    ground = np.degrees(np.arctan2(linkage.B[1] - linkage.A[1], linkage.B[0] - linkage.A[0]))
+    d, _ = textbook(linkage, np.radians(crank))
+    psi = np.degrees(np.arctan2(d[:, 1] - linkage.B[1], d[:, 0] - linkage.B[0])) - ground - best.output_offset_deg
+    off = (psi - scale * np.asarray(OUTPUTS) + 180) % 360 - 180
+    assert best.error["output"]["rms_deg"] == pytest.approx(float(np.sqrt((off**2).mean())), rel=1e-6)
+    assert best.error["objective"] == pytest.approx(float((off**2).sum()) / scale**2, rel=1e-6)
 
 
 def test_functions_and_motions_are_drawn() -> None:

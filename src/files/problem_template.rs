@@ -44,8 +44,8 @@ output_deg = [0, 2, 8, 18, 31, 48, 67]
 # Or of a formula in x: both links turn in proportion, the crank to x and the follower to the value.
 # of = \"log10(x)\"
 # over = [1, 2]                   # from the first to the last x
-# input_range_deg = 60            # so far does the crank turn
-# output_range_deg = 90           # so far does the follower turn
+# input_range_deg = 60            # so far does the crank turn; \"free\": that is found too
+# output_range_deg = 90           # so far does the follower turn, likewise
 # samples = 61
 sense = \"any\"                   # \"same\": both turn counter-clockwise; \"opposite\": the follower the other way
 input_offset = \"free\"           # where the crank starts is free; \"ground\": inputs count from the line A to B
@@ -220,8 +220,9 @@ const BODY: &str = "\
 # coupler_y = [-500, 500]       # and across it
 ";
 
-/// The requirement that a motion alone can have.
+/// The requirements of a motion that others cannot have, or seldom.
 const PINS: &str = "\
+# pivot_on = { A = [[0, 0], [100, 0]] }    # the line of a fixed pivot, through two points; or a point [[x, y]]
 # pins_in = [-300, -200, 300, 200]         # where in the body's own frame there is room for its two pins; or a polygon
 ";
 

@@ -11,6 +11,7 @@ use crate::mechanism::{AssemblyMode, Complex, FourBar, point};
 use crate::record::{
     AngleErrorRecord, Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord,
 };
+use crate::task::ranges::Reference;
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::{Limits, Objective, TransmissionOver};
 use crate::task::{AngleOffset, Problem, Sense};
@@ -36,7 +37,7 @@ pub fn assess(
 /// Judges a candidate anew, by this problem; the body of a motion keeps its place on the coupler.
 pub fn assess_again(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
     let Candidate { linkage, crank_deg, t1_at, .. } = candidate;
-    assess_on_curve(problem, linkage, (crank_deg, t1_at), candidate.own_frame_deg(), None)
+    assess_on_curve(problem, linkage, (crank_deg, t1_at), candidate.own_reference(&problem.spec().task), None)
 }
 
 /// Computes the distances of a candidate to its whole curve anew. Those of the candidates that a search does not list are
@@ -47,7 +48,7 @@ pub fn measure_curve(problem: &Problem, candidate: &mut Candidate) {
     }
 }
 
-/// As [`assess`] at the positions `at`, for a link whose angles count from `frame_deg` ([`Candidate::own_frame_deg`];
+/// As [`assess`] at the positions `at`, for a link whose angles count from `own` ([`Candidate::own_reference`];
 /// without it: where the errors are least) and for a linkage whose distances to its whole curve may be known: a cognate has those of the
 /// linkage that it is a cognate of. They are most of the cost.
 ///
@@ -57,7 +58,7 @@ pub fn assess_on_curve(
     problem: &Problem,
     linkage: &FourBar,
     at: (&[f64], &[AssemblyMode]),
-    frame_deg: Option<f64>,
+    own: Option<Reference>,
     to_curve: Option<CurveErrorRecord>,
 ) -> Option<Candidate> {
     let (crank_deg, assemblies) = at;
@@ -68,7 +69,7 @@ pub fn assess_on_curve(
     if !linkage.link_ratio().is_finite() {
         return None;
     }
-    let error = task.errors(linkage, &crank_angles, assemblies, frame_deg.map(f64::to_radians))?;
+    let error = task.errors(linkage, &crank_angles, assemblies, own)?;
     let to_curve = match to_curve {
         Some(known) => known,
         None => distances_to_curve(task.points(), linkage, crank_angles[0], assemblies[0])?,
@@ -90,7 +91,9 @@ pub fn assess_on_curve(
         max_at: angle.max_at,
     });
     let is_function = task.is_function();
-    let given_frame = || error.angle.as_ref().map(|angle| frame_deg.unwrap_or(angle.frame.to_degrees()));
+    let given_frame =
+        || error.angle.as_ref().map(|angle| own.map_or(angle.frame.to_degrees(), |own| own.frame_deg));
+    let [input_range_deg, output_range_deg] = ranges_deg(problem, crank_deg, &error);
     let offsets_deg = is_function.then(|| offsets_deg(problem, linkage, crank_deg, &error)).flatten();
     let mut candidate = Candidate {
         rank: 0,
@@ -100,6 +103,8 @@ pub fn assess_on_curve(
         frame_deg: given_frame().filter(|_| !is_function),
         input_offset_deg: offsets_deg.map(|[input, _]| input),
         output_offset_deg: offsets_deg.map(|[_, output]| output),
+        input_range_deg,
+        output_range_deg,
         sense: error.angle.as_ref().filter(|_| is_function).map(|angle| Sense::of(angle.sign)),
         error: ErrorRecord {
             objective: match problem.spec().solve.objective {
@@ -110,7 +115,7 @@ pub fn assess_on_curve(
             rms,
             max: error.max,
             max_at: error.max_at,
-            rms_over_size: rms / task.error_size(),
+            rms_over_size: rms / (error.scale() * task.error_size()),
             to_curve,
             angle: of_link.filter(|_| !is_function),
             output: of_link.filter(|_| is_function),
@@ -154,13 +159,35 @@ fn offsets_deg(
     let input = match given.offset {
         AngleOffset::Ground => 0.0,
         AngleOffset::Free | AngleOffset::Fixed => {
-            within_half_a_turn(crank_deg[0] - given.crank_deg[0] - ground_deg)
+            let scale = input_scale(problem, crank_deg);
+            within_half_a_turn(crank_deg[0] - scale * given.crank_deg[0] - ground_deg)
         }
     };
     let output_from_ground = problem.task().body()?.given_frame(0.0).is_some();
     let output =
         if output_from_ground { 0.0 } else { within_half_a_turn(-angle.frame.to_degrees() - ground_deg) };
     Some([input, output])
+}
+
+/// Returns the scale of the written inputs of a function at crank angles (degrees); 1 unless their range is free.
+fn input_scale(problem: &Problem, crank_deg: &[f64]) -> f64 {
+    let is_free = problem.task().ranges().free()[0];
+    let Some(written) = problem.spec().task.timing.as_ref().filter(|_| is_free) else { return 1.0 };
+    let order = |one: &(usize, &f64), other: &(usize, &f64)| one.1.total_cmp(other.1);
+    let least = written.crank_deg.iter().enumerate().min_by(order);
+    let greatest = written.crank_deg.iter().enumerate().max_by(order);
+    let (Some((i, low)), Some((j, high))) = (least, greatest) else { return 1.0 };
+    (crank_deg[j] - crank_deg[i]) / (high - low)
+}
+
+/// Returns the ranges of the inputs and the outputs of a function, degrees, each if it is free.
+fn ranges_deg(problem: &Problem, crank_deg: &[f64], error: &StructuralError) -> [Option<f64>; 2] {
+    let free = problem.task().ranges().free();
+    if free == [false; 2] {
+        return [None; 2];
+    }
+    let [input, output] = problem.spec().task.written_ranges_deg();
+    [free[0].then(|| input_scale(problem, crank_deg) * input), free[1].then(|| error.scale() * output)]
 }
 
 /// Returns an angle in degrees within half a turn.

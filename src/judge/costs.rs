@@ -84,7 +84,7 @@ pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
     let (setting, positions) = (start.setting, &start.positions);
     let motion = if positions.is_empty() {
         let Some(fit) = TimedPathFit::new(problem, setting) else { return Vec::new() };
-        fit.motion(&start.design, &shape)
+        fit.motion(&start.design, &shape, start.scales[0])
     } else {
         PathFit::new(problem, setting).motion(&shape, positions)
     };
@@ -139,7 +139,7 @@ impl At<'_> {
         });
         // Unknowns that can move, lengths in sizes of the target.
         let unknowns: Vec<(usize, f64)> = (0..DESIGN)
-            .filter(|&i| space.bounds()[i].0 < space.bounds()[i].1)
+            .filter(|&i| space.bounds()[i].0 < space.bounds()[i].1 || space.is_held(i))
             .map(|i| (i, if space.coordinate(i).is_none_or(|(_, is_angle)| is_angle) { 1.0 } else { size }))
             .collect();
         let scaled = |row: &[f64; N]| unknowns.iter().map(|&(i, by)| by * row[i]).collect::<Vec<f64>>();
@@ -180,6 +180,10 @@ impl At<'_> {
     fn bounds(&self, unknowns: &[(usize, f64)], active: &mut Vec<Active>) {
         for (place, &(i, by)) in unknowns.iter().enumerate() {
             let Some((name, is_angle)) = self.space.coordinate(i) else { continue };
+            if self.space.is_held(i) {
+                // The line of the pivot is a row already.
+                continue;
+            }
             let (low, high) = self.space.bounds()[i];
             let row = format!("design.{name}");
             let given = design_limits(&self.problem.spec().design, &row);

@@ -5,6 +5,7 @@ use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar};
 use crate::record::{Candidate, CurveErrorRecord};
+use crate::task::ranges::Reference;
 use crate::task::{Body, Problem, Task, best_frame};
 use rayon::prelude::*;
 
@@ -14,7 +15,8 @@ pub struct StructuralError {
     /// The error vectors of the place, desired minus generated, one per target.
     pub structural: Vec<Complex>,
     /// The weighted sum of squares, sum_j w_j (|T_j - P_j|^2 + (W dtheta_j)^2) with the angle's weight W, a length; in a
-    /// path the first term alone, in a function the second, in degrees squared.
+    /// path the first term alone, in a function the second, in degrees squared, of the outputs as they are written where their
+    /// range is free.
     pub objective: f64,
     /// The sum of squares, sum_j |T_j - P_j|^2; in a function of the output's errors, degrees squared.
     pub sum_sq: f64,
@@ -34,6 +36,8 @@ pub struct AngleError {
     pub frame: f64,
     /// The sign in which the angles count: +1 of a body.
     pub sign: f64,
+    /// The scale of the written angles: 1 unless the range of a function's outputs is free.
+    pub scale: f64,
     /// The errors, desired minus generated, in radians within half a turn; `None` where only the place counts.
     pub structural: Vec<Option<f64>>,
     /// The root of the mean square, over the targets that have an angle.
@@ -45,13 +49,18 @@ pub struct AngleError {
 }
 
 impl AngleError {
-    /// Returns the errors of a link in directions `lines` (radians), one a target, whose angles count from `frame`; without a
-    /// frame, so that the weighted sum of squares is least. Of two senses that are allowed it is the one of the lesser weighted sum of squares.
-    fn of(body: &Body, weights: &[f64], lines: &[f64], frame: Option<f64>) -> AngleError {
-        let with = |sign: &f64| AngleError::with(body, (weights, *sign), lines, frame);
+    /// Returns the errors of a link in directions `lines` (radians), one a target, whose angles count from `own`; without it,
+    /// from `frame` if that is given, and so that the weighted sum of squares is least. Of two senses that are allowed it is the one of the lesser weighted sum of squares.
+    fn of(
+        body: &Body,
+        weights: &[f64],
+        lines: &[f64],
+        (own, frame): (Option<Reference>, Option<f64>),
+    ) -> AngleError {
+        let with = |sign: &f64| AngleError::with(body, (weights, *sign), lines, (own, frame));
         let sum = |error: &AngleError| {
             let each = error.structural.iter().zip(weights);
-            each.map(|(error, weight)| weight * error.unwrap_or(0.0).powi(2)).sum::<f64>()
+            each.map(|(e, weight)| weight * (e.unwrap_or(0.0) / error.scale).powi(2)).sum::<f64>()
         };
         let all = body.signs().iter().map(with);
         // Of equal ones the first.
@@ -60,14 +69,22 @@ impl AngleError {
     }
 
     /// As [`AngleError::of`] in the sense of a sign.
-    fn with(body: &Body, (weights, sign): (&[f64], f64), lines: &[f64], frame: Option<f64>) -> AngleError {
+    fn with(
+        body: &Body,
+        (weights, sign): (&[f64], f64),
+        lines: &[f64],
+        (own, frame): (Option<Reference>, Option<f64>),
+    ) -> AngleError {
+        let scale = own.map_or_else(|| best_scale(body, (weights, sign), lines, frame), |own| own.scale);
         let apart: Vec<Option<f64>> = body
             .angles
             .iter()
             .zip(lines)
-            .map(|(angle, line)| angle.map(|angle| sign * angle - line))
+            .map(|(angle, line)| angle.map(|angle| sign * scale * angle - line))
             .collect();
-        let frame = frame.unwrap_or_else(|| best_frame(&apart, weights));
+        let frame = frame
+            .or(own.map(|own| own.frame_deg.to_radians()))
+            .unwrap_or_else(|| best_frame(&apart, weights));
         let structural: Vec<Option<f64>> =
             apart.iter().map(|apart| apart.map(|a| wrapped(a - frame))).collect();
         let (mut sum_sq, mut count, mut max, mut max_at) = (0.0, 0_usize, 0.0_f64, None);
@@ -82,6 +99,7 @@ impl AngleError {
         AngleError {
             frame,
             sign,
+            scale,
             structural,
             rms: rms(sum_sq, count.max(1)),
             max,
@@ -90,15 +108,29 @@ impl AngleError {
     }
 }
 
+/// Returns the scale of a function's outputs for which the errors in parts of their range are least; 1 unless it is free.
+fn best_scale(body: &Body, (weights, sign): (&[f64], f64), lines: &[f64], frame: Option<f64>) -> f64 {
+    if !body.ranges().free()[1] {
+        return body.ranges().output.0;
+    }
+    let outputs: Vec<f64> = body.angles.iter().map(|angle| sign * angle.unwrap_or(0.0)).collect();
+    body.ranges().best_output(&outputs, lines, weights, frame)
+}
+
 /// Returns sqrt(sum_sq / n), the root of the mean square.
 pub fn rms(sum_sq: f64, n: usize) -> f64 {
     (sum_sq / n as f64).sqrt()
 }
 
 impl StructuralError {
+    /// Returns the scale of the written outputs of a function; 1 unless their range is free.
+    pub fn scale(&self) -> f64 {
+        self.angle.as_ref().map_or(1.0, |angle| angle.scale)
+    }
+
     /// Returns max_j |T_j - P_j| / tol_j, without a unit: 1 if the tolerances are just met; without tolerances the
     /// largest error, a length. In a motion the parts |dtheta_j| / tolerance_deg_j count too; without any tolerance,
-    /// the lengths W |dtheta_j|.
+    /// the lengths W |dtheta_j|, in parts of the scale of a function's outputs.
     pub fn deviation(&self, task: &Task) -> f64 {
         let of_angles = |part: &dyn Fn(usize, f64) -> f64| {
             let angles = self.angle.iter().flat_map(|angle| angle.structural.iter().enumerate());
@@ -118,7 +150,12 @@ impl StructuralError {
             Some(tolerances) => places.max(of_angles(&|j, error| error / tolerances[j])),
             None if task.tolerances().is_some() => places,
             None => {
-                places.max(of_angles(&|_, error| task.body().map_or(0.0, |body| body.angle_weight) * error))
+                let scale = self.scale();
+                let length = task.body().map_or(0.0, |body| body.angle_weight);
+                match self.structural.is_empty() {
+                    true => of_angles(&|_, error| length * error / scale),
+                    false => places.max(of_angles(&|_, error| length * error)),
+                }
             }
         }
     }
@@ -126,8 +163,8 @@ impl StructuralError {
 
 impl Task {
     /// Returns the errors of a linkage at the given crank angles (radians) and assemblies, one per target; `None` if the
-    /// loop is open at a target. The body of a motion lies at `frame` from C -> D (radians); without a frame it lies where
-    /// the errors are least.
+    /// loop is open at a target. The angles of the body or of the follower count from `own`; without it, from where the errors
+    /// are least.
     ///
     /// # Panics
     /// If there are fewer angles or assemblies than points.
@@ -136,7 +173,7 @@ impl Task {
         linkage: &FourBar,
         crank_angles: &[f64],
         assemblies: &[AssemblyMode],
-        frame: Option<f64>,
+        own: Option<Reference>,
     ) -> Option<StructuralError> {
         computed(self.len());
         let mut error = StructuralError {
@@ -166,10 +203,10 @@ impl Task {
             }
         }
         if let Some(body) = self.body() {
-            let frame = body.given_frame(linkage.ground_angle()).or(frame);
-            let angle = AngleError::of(body, self.weights(), &lines, frame);
+            let frame = body.given_frame(linkage.ground_angle());
+            let angle = AngleError::of(body, self.weights(), &lines, (own, frame));
             for (error_of_angle, weight) in angle.structural.iter().zip(self.weights()) {
-                let length = body.angle_weight * error_of_angle.unwrap_or(0.0);
+                let length = body.angle_weight * error_of_angle.unwrap_or(0.0) / angle.scale;
                 error.objective += weight * length * length;
             }
             if self.is_function() {
@@ -186,8 +223,8 @@ impl Task {
 /// Returns the errors of a candidate at its own positions and in its own frame; `None` if the loop is open at a target.
 pub fn structural_error(problem: &Problem, candidate: &Candidate) -> Option<StructuralError> {
     let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-    let frame = candidate.own_frame_deg().map(f64::to_radians);
-    problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at, frame)
+    let own = candidate.own_reference(&problem.spec().task);
+    problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at, own)
 }
 
 /// The cost of finding the nearest point of a curve, in positions: 720 samples are compared, and one or two minima

@@ -63,6 +63,11 @@ pub fn exact_cost(problem: &Problem) -> f64 {
         * problem.task().error_size().powi(2)
 }
 
+/// Returns the rms error below which a linkage is exact.
+pub fn exact_error(problem: &Problem) -> f64 {
+    exact_mean_sq(problem).sqrt() * problem.task().error_size()
+}
+
 /// Returns the objective below which a fit is exact: a weighted sum of squares; or a largest deviation, which is a
 /// length, or if tolerances are given that length in parts of the least of them.
 pub fn exact_objective(problem: &Problem) -> f64 {

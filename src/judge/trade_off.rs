@@ -1,12 +1,15 @@
 //! Trade-offs between figures: dominance, the choice of the members of a front by hypervolume, and its knees.
 //!
 //! A linkage *dominates* another if it is at least as good on every axis and better on one; figures within
-//! [`EQUAL_FIGURES`] of each other are equal. For choices the axes are scaled to [0, 1] over the set, small is good,
+//! [`EQUAL_FIGURES`] of each other are equal, and so are errors that are rounding alone: where exact answers form a family,
+//! which of them has the least error says nothing. For choices the axes are scaled to [0, 1] over the set, small is good,
 //! with errors, lengths and ratios as logarithms and angles as they are. The *hypervolume* of a set is the volume that
 //! its members dominate below the point (1.1, .., 1.1) (Zitzler and Thiele 1999). Members are chosen one after the
 //! other, each the one that adds most to it, after the best on every axis.
 
+use crate::judge::rank::exact_error;
 use crate::record::{Axis, EQUAL_FIGURES, Figures};
+use crate::task::Problem;
 
 /// The coordinate, on every axis, of the point up to which volumes count.
 const REFERENCE: f64 = 1.1;
@@ -15,10 +18,37 @@ const LEAST_ERROR: f64 = 1e-9;
 /// Distance of a member from the line through its neighbours, on scaled axes, from which it is a knee.
 const KNEE: f64 = 0.06;
 
-/// Returns a figure as a loss: small is good.
-fn loss(figures: &Figures, axis: Axis) -> f64 {
-    let value = figures.of(axis);
-    if axis == Axis::Transmission { -value } else { value }
+/// The axes of a front, with the errors up to which a linkage is exact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wishes {
+    /// The axes.
+    pub axes: Vec<Axis>,
+    /// The rms error, and the largest error, that are rounding alone.
+    pub exact: [f64; 2],
+}
+
+impl Wishes {
+    /// Returns the axes of a front of a problem.
+    pub fn of(problem: &Problem, axes: &[Axis]) -> Wishes {
+        let rms = exact_error(problem);
+        Wishes { axes: axes.to_vec(), exact: [rms, rms * (problem.task().len() as f64).sqrt()] }
+    }
+
+    /// Returns a figure as a loss: small is good.
+    pub fn loss(&self, figures: &Figures, axis: Axis) -> f64 {
+        let value = figures.of(axis);
+        match axis {
+            Axis::Transmission => -value,
+            Axis::Rms => value.max(self.exact[0]),
+            Axis::Max => value.max(self.exact[1]),
+            _ => value,
+        }
+    }
+
+    /// Returns the gain of one linkage over another on each axis; 0 where they are equal.
+    fn gains<'a>(&'a self, one: &'a Figures, other: &'a Figures) -> impl Iterator<Item = f64> + 'a {
+        self.axes.iter().map(|&axis| gain(self.loss(one, axis), self.loss(other, axis)))
+    }
 }
 
 /// Returns how far one loss is below another, in parts of the larger; 0 if they are equal.
@@ -28,8 +58,8 @@ fn gain(better: f64, worse: f64) -> f64 {
 }
 
 /// Returns whether `one` dominates `other`.
-pub fn dominates(axes: &[Axis], one: &Figures, other: &Figures) -> bool {
-    let gains = axes.iter().map(|&axis| gain(loss(one, axis), loss(other, axis)));
+pub fn dominates(wishes: &Wishes, one: &Figures, other: &Figures) -> bool {
+    let gains = wishes.gains(one, other);
     let (mut worse, mut better) = (false, false);
     for gain in gains {
         worse |= gain < 0.0 || gain.is_nan();
@@ -39,16 +69,16 @@ pub fn dominates(axes: &[Axis], one: &Figures, other: &Figures) -> bool {
 }
 
 /// Returns whether all figures of two linkages are equal.
-pub fn are_equal(axes: &[Axis], one: &Figures, other: &Figures) -> bool {
-    axes.iter().all(|&axis| gain(loss(one, axis), loss(other, axis)) == 0.0)
+pub fn are_equal(wishes: &Wishes, one: &Figures, other: &Figures) -> bool {
+    wishes.gains(one, other).all(|gain| gain == 0.0)
 }
 
 /// Returns the indices of those that none dominates, in their order; of equal ones the first.
-pub fn undominated(axes: &[Axis], all: &[Figures]) -> Vec<usize> {
+pub fn undominated(wishes: &Wishes, all: &[Figures]) -> Vec<usize> {
     let beaten = |i: usize| {
         let one = &all[i];
         all.iter().enumerate().any(|(j, other)| {
-            j != i && (dominates(axes, other, one) || (j < i && are_equal(axes, one, other)))
+            j != i && (dominates(wishes, other, one) || (j < i && are_equal(wishes, one, other)))
         })
     };
     (0..all.len()).filter(|&i| !beaten(i)).collect()
@@ -241,19 +271,31 @@ mod tests {
 
     #[test]
     fn better_on_one_axis_and_worse_on_none_dominates() {
+        let wishes = Wishes { axes: AXES.into(), exact: [0.0; 2] };
         let one = figures(1.0, 10.0);
-        assert!(dominates(&AXES, &one, &figures(1.0, 11.0)) && !dominates(&AXES, &figures(1.0, 11.0), &one));
-        assert!(!dominates(&AXES, &one, &figures(0.9, 11.0)) && !dominates(&AXES, &one, &one));
+        assert!(
+            dominates(&wishes, &one, &figures(1.0, 11.0)) && !dominates(&wishes, &figures(1.0, 11.0), &one)
+        );
+        assert!(!dominates(&wishes, &one, &figures(0.9, 11.0)) && !dominates(&wishes, &one, &one));
         let nearly = figures(1.0 + 1e-10, 10.0);
-        assert!(!dominates(&AXES, &one, &nearly) && are_equal(&AXES, &one, &nearly));
-        assert_eq!(undominated(&AXES, &[nearly, one, figures(2.0, 9.0), figures(2.0, 9.5)]), [0, 2]);
+        assert!(!dominates(&wishes, &one, &nearly) && are_equal(&wishes, &one, &nearly));
+        assert_eq!(undominated(&wishes, &[nearly, one, figures(2.0, 9.0), figures(2.0, 9.5)]), [0, 2]);
+    }
+
+    #[test]
+    fn of_exact_linkages_the_error_says_nothing() {
+        let wishes = Wishes { axes: AXES.into(), exact: [1e-11, 2e-11] };
+        let (one, other) = (figures(9e-13, 10.0), figures(2e-14, 11.0));
+        assert!(dominates(&wishes, &one, &other) && !dominates(&wishes, &other, &one));
+        assert!(are_equal(&wishes, &one, &figures(3e-15, 10.0)));
+        assert!(!dominates(&wishes, &figures(1e-9, 10.0), &other));
     }
 
     #[test]
     fn the_angle_is_large_where_it_is_good() {
-        let axes = [Axis::Rms, Axis::Transmission];
+        let wishes = Wishes { axes: vec![Axis::Rms, Axis::Transmission], exact: [0.0; 2] };
         let steep = Figures { transmission_deg: 50.0, ..figures(1.0, 1.0) };
-        assert!(dominates(&axes, &steep, &figures(1.0, 1.0)));
+        assert!(dominates(&wishes, &steep, &figures(1.0, 1.0)));
     }
 
     #[test]

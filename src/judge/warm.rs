@@ -6,7 +6,7 @@ use crate::task::forms::design_space::Shape;
 use crate::task::forms::rows::nearest_type;
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::{PathFit, Positions};
-use crate::task::{Problem, Sense, Setting};
+use crate::task::{Problem, Setting};
 
 /// Returns the start at a candidate; `None` if the loop is open at a point or there are fewer positions than points.
 ///
@@ -29,10 +29,11 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
     }
     let types = problem.types();
     let aim = if types.is_empty() { None } else { nearest_type(shape.links(), types) };
-    let (direction, mut offset) = direction_and_offset(problem, &candidate.crank_deg, candidate.sense);
+    let (direction, mut offset) = direction_and_offset(problem, candidate);
     if let Some(frame) = candidate.frame_deg.filter(|_| problem.frame_is_free()) {
         offset = frame.to_radians();
     }
+    let scales = problem.task().ranges().nearest(candidate.scales(&problem.spec().task));
     let side = candidate.linkage.side();
     let setting = Setting { aim, assembly: candidate.t1_at[0], direction, side };
     let design = problem.space(side).design(&shape, offset);
@@ -45,15 +46,17 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
             PathFit::new(problem, setting).settle(&design, &mut positions).then_some(positions)?
         }
     };
-    Some(Start { design, setting, positions })
+    Some(Start { design, setting, positions, scales })
 }
 
 /// Returns the direction of the prescribed increments (in a function the sign of its outputs) and the angle that is added
 /// to them, in radians.
-fn direction_and_offset(problem: &Problem, crank_deg: &[f64], sense: Option<Sense>) -> (f64, f64) {
+fn direction_and_offset(problem: &Problem, candidate: &Candidate) -> (f64, f64) {
+    let crank_deg = candidate.crank_deg.as_slice();
     let Some(timing) = &problem.spec().task.timing else { return (problem.directions()[0], 0.0) };
-    if let Some(sense) = sense {
-        let offset = (crank_deg[0] - timing.crank_deg[0]).to_radians();
+    if let Some(sense) = candidate.sense {
+        let scale = candidate.scales(&problem.spec().task)[0];
+        let offset = (crank_deg[0] - scale * timing.crank_deg[0]).to_radians();
         return (sense.signs()[0], if problem.offset_is_free() { offset } else { 0.0 });
     }
     let written = &timing.crank_deg;

@@ -75,7 +75,7 @@ pub fn is_serious(warning: &Warning) -> bool {
 const SIDES: [&str; 4] = [" xmin", " ymin", " xmax", " ymax"];
 
 /// Calls `each` with key, side of a box, value and limit for every limit of a requirement that the value lies on. Fixed
-/// values and coordinates that a box fixes have none.
+/// values, and coordinates that a box or a line fixes, have none.
 fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&str, &str, f64, f64)) {
     let name = requirement.name.as_str();
     let unit = match RequirementKind::named(name) {
@@ -95,7 +95,8 @@ fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&
             }
         }
         (Figure::Number(value), Figure::Number(limit))
-            if !RequirementKind::names_tolerance(name) && on(*value, *limit) =>
+            if !(RequirementKind::names_tolerance(name) || RequirementKind::names_line(name))
+                && on(*value, *limit) =>
         {
             each(name, "", *value, *limit);
         }

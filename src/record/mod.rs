@@ -18,8 +18,9 @@
 //! | [`sweep`] | sweeps: many problems that are one problem with different values of some keys |
 
 use crate::mechanism::{AssemblyMode, FourBar, LinkageType, Unit};
+use crate::task::ranges::{Reference, Scales};
 pub use crate::task::requirement::LimitUnit;
-use crate::task::spec::{Method, ProblemSpec, TransmissionOver};
+use crate::task::spec::{Method, ProblemSpec, TaskSpec, TransmissionOver};
 use crate::task::{Defect, Sense};
 use digest::NotWritten;
 use serde::{Deserialize, Serialize};
@@ -271,6 +272,13 @@ pub struct Candidate {
     /// In a function: the follower's angle from the ground line A -> B at an output of zero, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output_offset_deg: Option<f64>,
+    /// In a function with a free input range: the angle that the crank turns through, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input_range_deg: Option<f64>,
+    /// In a function with a free output range: the angle that the follower turns through as its outputs go from the least to
+    /// the greatest, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub output_range_deg: Option<f64>,
     /// In a function: the sense in which output angles count.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sense: Option<Sense>,
@@ -315,6 +323,23 @@ impl Candidate {
     pub fn own_frame_deg(&self) -> Option<f64> {
         let of_output = || Some(-(self.output_offset_deg? + self.linkage.ground_angle().to_degrees()));
         self.frame_deg.or_else(of_output)
+    }
+
+    /// Returns the scales of the inputs and the outputs of a function as its task writes them: 1 unless their range is free.
+    pub fn scales(&self, task: &TaskSpec) -> Scales {
+        if self.input_range_deg.is_none() && self.output_range_deg.is_none() {
+            return [1.0; 2];
+        }
+        let [input, output] = task.written_ranges_deg();
+        [
+            self.input_range_deg.map_or(1.0, |range| range / input),
+            self.output_range_deg.map_or(1.0, |range| range / output),
+        ]
+    }
+
+    /// Returns the angle from which the angles of its link count, with the scale of a function's outputs.
+    pub fn own_reference(&self, task: &TaskSpec) -> Option<Reference> {
+        Some(Reference { frame_deg: self.own_frame_deg()?, scale: self.scales(task)[1] })
     }
 }
 

@@ -42,6 +42,7 @@ pub(super) fn error(task: &TaskSpec, candidate: &Candidate, target: usize, part:
             let wanted = (*task.body.as_ref()?.angle_deg.get(target)?)?.to_radians();
             if let Some(output) = output_deg(candidate, joints.follower_pin) {
                 let sign = candidate.sense?.signs()[0];
+                let wanted = candidate.scales(task)[1] * wanted;
                 return Some(wrapped(sign * wanted - output.to_radians()).abs().to_degrees());
             }
             let coupler = joints.follower_pin - joints.crank_pin;

@@ -51,6 +51,15 @@ pub(super) const OF_FUNCTION: [Column<Candidate>; 3] = [
     ("sense", |c| c.sense.map_or(String::new(), |sense| words::sense(sense).to_owned())),
 ];
 
+/// As [`OF_FUNCTION`], of one with a free range.
+pub(super) const OF_FREE_RANGES: [Column<Candidate>; 5] = [
+    OF_FUNCTION[0],
+    OF_FUNCTION[1],
+    ("input_range_deg", |c| c.input_range_deg.map_or(String::new(), exact)),
+    ("output_range_deg", |c| c.output_range_deg.map_or(String::new(), exact)),
+    OF_FUNCTION[2],
+];
+
 /// The parameters of a linkage: coordinates, lengths and signs.
 pub(super) const PARAMETERS: [Column<FourBar, f64>; 11] = [
     ("Ax", |l| l.crank_pivot().re),
@@ -80,8 +89,12 @@ pub const OUTPUT_ANGLE: &str = "output_deg";
 /// Returns one row for each candidate: every figure and parameter, defects as `order:3 7;branch:2` (points from 0), and
 /// the names of the requirements that are not met. Those of a motion have the errors of the angle too.
 pub fn candidates_csv(record: &Record) -> String {
-    let of_motion: &[Column<Candidate>] = match record.problem.resolved.task.kind() {
+    let task = &record.problem.resolved.task;
+    let of_motion: &[Column<Candidate>] = match task.kind() {
         TaskKind::Motion => &OF_MOTION,
+        TaskKind::Function if task.output.as_ref().is_some_and(|output| output.ranges.is_free()) => {
+            &OF_FREE_RANGES
+        }
         TaskKind::Function => &OF_FUNCTION,
         TaskKind::Path => &[],
     };

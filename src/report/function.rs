@@ -36,7 +36,9 @@ impl GeneratedPair {
 /// Returns the pairs of a task as a candidate generates them; none for another task.
 pub(super) fn pairs(task: &TaskSpec, candidate: &Candidate) -> Vec<GeneratedPair> {
     let at = candidate.crank_deg.iter().zip(&candidate.t1_at);
+    let [of_input, of_output] = candidate.scales(task);
     let pair = |([input, wanted], (crank_deg, t1)): ([f64; 2], (&f64, &crate::mechanism::AssemblyMode))| {
+        let (input, wanted) = (of_input * input, of_output * wanted);
         let turned = output(candidate, *crank_deg, *t1);
         let generated = turned.map(|turned| wanted - wrapped((wanted - turned).to_radians()).to_degrees());
         GeneratedPair { input, wanted, generated }

@@ -89,6 +89,9 @@ fn rate((unit, of_errors): (Option<Unit>, &str), rms: f64, cost: &Cost) -> Optio
     // A type and a crank that turns fully have no limit of their own.
     let of_margin = cost.limit == 0.0;
     let room = match (cost.unit_of_limit, cost.side.as_deref()) {
+        (LimitUnit::Length, None) if RequirementKind::names_line(&cost.name) => {
+            format!("{length} off the line")
+        }
         (LimitUnit::Length, None) if of_margin => format!("{length} of Grashof margin"),
         (LimitUnit::Length, None) => format!("{length} more than {}", significant(cost.limit, 4)),
         (LimitUnit::Length, Some("min")) => format!("{length} less than {}", significant(cost.limit, 4)),

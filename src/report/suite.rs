@@ -43,6 +43,9 @@ const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as 
     read in the source) and by our referee; genetic, diff. evolution: their median sum over accepted answers, \
     after as many evaluations as the search above used in the median, and how many seeds had one.";
 
+const BESIDE_OBJECTIVES: &str = "genetic, diff. evolution: the median objective of their accepted answers, after as many \
+    evaluations as the search above used in the median, and how many seeds had one.";
+
 /// Returns a suite as text: the answers, the comparisons, and the notes.
 pub fn suite_text(suite: &Suite, colour: Colour) -> String {
     let said = |text: &str| wrapped("  ", "    ", text, COLUMNS);
@@ -67,8 +70,9 @@ pub fn suite_text(suite: &Suite, colour: Colour) -> String {
             out.push('\n');
         }
         out.push_str(&said(section.meaning));
+        out.extend(section.has_populations().then(|| said(BESIDE_OBJECTIVES)));
         out.extend(is_first.then(|| said(TIMES)));
-        out.extend(without_populations(&section.problems).map(|why| said(&why)));
+        out.extend(without_populations(&section.problems).iter().map(|why| said(why)));
     }
     out.extend(proofs(suite).iter().map(|proof| said(proof)));
     let notes = notes(suite);
@@ -113,7 +117,8 @@ pub fn suite_markdown(suite: &Suite) -> String {
             out.push('\n');
         }
         out.push_str(&paragraph(section.meaning));
-        out.extend(without_populations(&section.problems).map(|why| paragraph(&why)));
+        out.extend(section.has_populations().then(|| paragraph(BESIDE_OBJECTIVES)));
+        out.extend(without_populations(&section.problems).iter().map(|why| paragraph(why)));
     }
     out.push_str(&paragraph(TIMES));
     out.extend(is_certified(&paths).then(|| paragraph(PROVED)));
@@ -163,9 +168,16 @@ struct Section<'a> {
 }
 
 impl Section<'_> {
-    /// Returns the table of the answers and that of the effort.
-    fn tables(&self) -> [Grid; 2] {
-        [answers_of_motions(&self.problems, self.has_places), effort(&self.problems, self.nouns)]
+    /// Returns the table of the answers, that of the population searches beside them if there are any, and that of the effort.
+    fn tables(&self) -> Vec<Grid> {
+        let mut tables = vec![answers_of_motions(&self.problems, self.has_places)];
+        tables.extend(self.has_populations().then(|| beside_objectives(&self.problems)));
+        tables.push(effort(&self.problems, self.nouns));
+        tables
+    }
+
+    fn has_populations(&self) -> bool {
+        self.problems.iter().any(|problem| !problem.populations.is_empty())
     }
 }
 
@@ -196,10 +208,14 @@ fn is_certified(problems: &[&ProblemResult]) -> bool {
     problems.iter().any(|p| p.certificate.is_some() || p.no_certificate.is_some())
 }
 
-/// Returns the sentence that says why no population search is shown beside these problems.
-fn without_populations(problems: &[&ProblemResult]) -> Option<String> {
-    let why = problems.iter().find_map(|problem| problem.no_populations.as_ref())?;
-    Some(format!("No genetic algorithm and no differential evolution beside them: {}.", clean_sentence(why)))
+/// Returns the sentences that say why no population search is shown beside some of these problems.
+fn without_populations(problems: &[&ProblemResult]) -> Vec<String> {
+    let why = |problem: &&ProblemResult| Some((problem.name.clone(), problem.no_populations.clone()?));
+    let sentences = by_reason(problems.iter().filter_map(why));
+    sentences
+        .into_iter()
+        .map(|sentence| format!("No genetic algorithm and no differential evolution beside {sentence}"))
+        .collect()
 }
 
 /// Returns a sentence for each certificate, and for each one that is not possible; motions with one reason together.
@@ -326,6 +342,24 @@ fn beside(problems: &[&ProblemResult]) -> Grid {
         ];
         for population in &problem.populations {
             cells.push(number(population.summary.median_sum_sq, 6));
+            cells.push(plain(format!("{}/{}", population.summary.accepted, population.runs.len())));
+        }
+        grid.row(cells);
+    }
+    grid
+}
+
+/// Returns the table of the population searches beside those of motions or functions.
+fn beside_objectives(problems: &[&ProblemResult]) -> Grid {
+    let heads = ["median", "genetic", "accepted", "diff. evolution", "accepted"];
+    let mut grid = Grid::new(&[(Left, &["problem"]), (Right, &heads)]);
+    for problem in problems.iter().filter(|problem| !problem.populations.is_empty()) {
+        let mut cells = vec![
+            plain(clean(&problem.name)),
+            number(problem.search.summary.median_objective, DIGITS_OF_OBJECTIVES),
+        ];
+        for population in &problem.populations {
+            cells.push(number(population.summary.median_objective, 6));
             cells.push(plain(format!("{}/{}", population.summary.accepted, population.runs.len())));
         }
         grid.row(cells);

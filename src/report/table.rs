@@ -86,19 +86,17 @@ fn without_angle(task: &TaskSpec) -> Option<String> {
     (without > 0).then(|| format!("{} of them without an angle", grouped(without as u64)))
 }
 
-/// Returns how far the links of a function turn: `log10(x) over 1 to 2, crank 60°, follower 90°`.
+/// Returns how far the links of a function turn: `log10(x) over 1 to 2, crank 60°, follower 30 to 180°`.
 fn ranges(task: &TaskSpec) -> Option<String> {
     let output = task.output.as_ref()?;
-    let range = |angles: &mut dyn Iterator<Item = f64>| {
-        let (low, high) = angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(a), h.max(a)));
-        brief(high - low, 5)
-    };
-    let input = range(&mut task.timing.iter().flat_map(|timing| timing.crank_deg.iter().copied()));
-    let follower = range(&mut task.body.iter().flat_map(|body| body.angle_deg.iter().flatten().copied()));
+    let [input, follower] = [0, 1].map(|which: usize| match output.ranges.bounds_deg()[which] {
+        Some([low, high]) => format!("{} to {}°", brief(low, 5), brief(high, 5)),
+        None => format!("{}°", brief(task.written_ranges_deg()[which], 5)),
+    });
     let formula = output.of.as_ref().map_or(String::new(), |of| {
         format!("{} over {} to {}, ", clean(&of.formula), brief(of.over[0], 5), brief(of.over[1], 5))
     });
-    Some(format!("{formula}crank {input}°, follower {follower}°"))
+    Some(format!("{formula}crank {input}, follower {follower}"))
 }
 
 pub(super) fn count(n: usize, noun: &str) -> String {
@@ -176,7 +174,10 @@ fn rows_of_function(record: &Record, colour: Colour) -> String {
     let size = record.problem.resolved.task.to_task().map_or(1.0, |task| task.error_size());
     let error = |value: f64, digits| significant(value, if value < EXACT * size { 1 } else { digits });
     let degrees = |value: f64| plain(error(value, 4) + "°");
-    let from = |deg: Option<f64>| plain(deg.map_or(NO_NUMBER.to_owned(), |deg| format!("{deg:.2}°")));
+    let from = |deg: Option<f64>, through: Option<f64>| {
+        let through = through.map_or_else(String::new, |range| format!(" +{range:.2}°"));
+        plain(deg.map_or(NO_NUMBER.to_owned(), |deg| format!("{deg:.2}°{through}")))
+    };
     let objective = |c: &Candidate| if ranks.is_some() { c.error.objective } else { c.error.sum_sq };
     let grid = Grid::of(
         &record.candidates,
@@ -189,8 +190,8 @@ fn rows_of_function(record: &Record, colour: Colour) -> String {
             (Right, "rms", &|c| degrees(c.error.rms)),
             (Right, "max", &|c| degrees(c.error.max)),
             (Right, "at", &|c| plain(worst_at(record, c).to_string())),
-            (Right, "crank", &|c| from(c.input_offset_deg)),
-            (Right, "follower", &|c| from(c.output_offset_deg)),
+            (Right, "crank", &|c| from(c.input_offset_deg, c.input_range_deg)),
+            (Right, "follower", &|c| from(c.output_offset_deg, c.output_range_deg)),
             (Left, "type", &|c| plain(c.linkage_type.name())),
             (Right, "transm.", &|c| plain(transmission(c))),
             (Right, "ratio", &|c| plain(significant(c.link_ratio, 3))),
@@ -252,7 +253,8 @@ fn notes(record: &Record) -> String {
 fn columns(record: &Record) -> &'static str {
     if record.problem.resolved.task.is_function() {
         return "rms, max: errors of the follower's angle, degrees, at which pair (from 0) the largest. crank, follower: \
-                their angles from the line A-B at an input and an output of 0. transm.: the worst transmission angle, from \
+                their angles from the line A-B at an input and an output of 0, + the range that they turn through where it is \
+                free. transm.: the worst transmission angle, from \
                 0 to 90°, over the crank's full turn (cycle) or between the pairs (used).";
     }
     if record.problem.resolved.task.body.is_some() {
@@ -301,7 +303,9 @@ fn best(record: &Record) -> String {
 fn follower_from(candidate: &Candidate) -> Option<String> {
     let from = candidate.output_offset_deg? + candidate.linkage.ground_angle().to_degrees();
     let way = if candidate.sense? == Sense::Opposite { "clockwise" } else { "counter-clockwise" };
-    Some(format!("follower from {}°, {way} as outputs rise", brief(from, 5)))
+    let through =
+        candidate.output_range_deg.map_or_else(String::new, |range| format!(" through {}°", brief(range, 5)));
+    Some(format!("follower from {}°{through}, {way} as outputs rise", brief(from, 5)))
 }
 
 /// Returns the motion of the crank: `crank from 31.102° to 371.1°, counter-clockwise`, `crank from 31.1° to 141°,

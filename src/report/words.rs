@@ -261,9 +261,9 @@ pub(super) fn minimised(
         ("objective", sentence)
     };
     Some(match measure {
-        Measure::Sum => sum(""),
+        Measure::Sum | Measure::SumInRange => sum(""),
         Measure::WeightedSum => sum(", each times its pose's weight"),
-        Measure::Largest => (
+        Measure::Largest | Measure::LargestInRange => (
             "deviation",
             format!(
                 "deviation: the largest error, of the place or of the angle in radians times angle_weight, which was \
@@ -296,6 +296,16 @@ fn minimised_in_a_path(measure: Measure) -> Option<(&'static str, &'static str)>
         Measure::Largest => {
             Some(("deviation", "deviation: the largest error, which was minimised and ranks."))
         }
+        Measure::SumInRange => Some((
+            "sq in range",
+            "sq in range: the weighted sum of squared errors in degrees of the outputs as they are written, which was minimised \
+             and ranks: errors count in parts of the output's range, which is free; rms and max are in true degrees.",
+        )),
+        Measure::LargestInRange => Some((
+            "in range",
+            "in range: the largest error in degrees of the outputs as they are written, which was minimised and ranks: errors \
+             count in parts of the output's range, which is free; rms and max are in true degrees.",
+        )),
         Measure::LargestPart => Some((
             "deviation",
             "deviation: the largest error in parts of its point's tolerance, which was minimised and ranks; 1 is just met.",
@@ -312,7 +322,8 @@ pub(super) fn sense(sense: Sense) -> &'static str {
     }
 }
 
-/// Returns the starting angles of a function's links: `crank from 31.8°, follower from 61.5°, in the same sense`.
+/// Returns the starting angles of a function's links, with the ranges that are free: `the crank from 31.8° and the follower
+/// from 61.5° through 88.2°, in the same sense`.
 pub(super) fn offsets(candidate: &Candidate) -> Option<String> {
     let [input, output] =
         [candidate.input_offset_deg?, candidate.output_offset_deg?].map(|deg| significant(deg, 6));
@@ -320,7 +331,13 @@ pub(super) fn offsets(candidate: &Candidate) -> Option<String> {
         Sense::Opposite => "opposite senses",
         Sense::Same | Sense::Any => "the same sense",
     };
-    Some(format!("from the line A-B, the crank from {input}° and the follower from {output}°, in {sense}"))
+    let through = |range: Option<f64>| {
+        range.map_or_else(String::new, |range| format!(" through {}°", significant(range, 6)))
+    };
+    let [of_crank, of_follower] = [candidate.input_range_deg, candidate.output_range_deg].map(through);
+    Some(format!(
+        "from the line A-B, the crank from {input}°{of_crank} and the follower from {output}°{of_follower}, in {sense}"
+    ))
 }
 
 /// Returns the errors of the body's angle in a motion: `angle error 0.31° rms, largest 0.8° at pose 3`.

@@ -135,6 +135,7 @@ impl Coarse {
             design: coarse.design,
             setting: coarse.setting,
             positions,
+            scales: coarse.scales,
         })
     }
 }

@@ -97,6 +97,8 @@ pub mod motion {
     pub const GRID: usize = 61;
     pub const REACH: f64 = 2.5;
     pub const MINIMA: usize = 6;
+    /// Places along a line of pivots at which the best dyad is compared with its neighbours.
+    pub const ON_LINE: usize = 200;
     /// Sets of five poses in the first round and in a later one.
     pub const SETS_FIRST: usize = 3;
     pub const SETS_LATER: usize = 2;

@@ -12,6 +12,7 @@ use crate::synthesis::constants::motion::{CLIMB_DEG, CLIMB_LEAST_DEG, CLIMBED};
 use crate::synthesis::multistart::MIDDLE_FIT;
 use crate::synthesis::tightened::{Tighter, fitted};
 use crate::task::Problem;
+use crate::task::pivot_on::PivotOn;
 use rayon::prelude::*;
 
 /// Returns the number of free parameters that are left when all targets are met; 0 if there are equations enough.
@@ -19,8 +20,12 @@ pub(super) fn freedom(problem: &Problem) -> usize {
     let task = problem.task();
     let space = problem.space(problem.sides()[0]);
     let free = space.bounds().iter().filter(|(low, high)| low < high).count();
+    // A slanted line takes one parameter of its pivot.
+    let lines = problem.spec().require.pivot_on.iter().flat_map(PivotOn::both).flatten();
+    let free = free.saturating_sub(lines.filter(|locus| locus.is_slanted()).count());
     if let Some(output) = task.body().filter(|_| task.is_function()) {
-        let unknowns = free + usize::from(output.given_frame(0.0).is_none());
+        let of_ranges = output.ranges().free().into_iter().filter(|is_free| *is_free).count();
+        let unknowns = free + usize::from(output.given_frame(0.0).is_none()) + of_ranges;
         return unknowns.saturating_sub(task.len());
     }
     let angles = task.body().map_or(&[][..], |body| &body.angles);

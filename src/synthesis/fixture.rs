@@ -4,7 +4,7 @@
 
 use crate::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
 use crate::task::forms::design_space::Shape;
-use crate::task::forms::start::Start;
+use crate::task::forms::start::{AS_WRITTEN, Start};
 use crate::task::forms::torus::Positions;
 use crate::task::{Problem, Setting};
 
@@ -37,5 +37,5 @@ pub(crate) fn start(problem: &Problem, linkage: &FourBar, positions: Positions) 
     let setting =
         Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: problem.sides()[0] };
     let design = problem.space(setting.side).design(&Shape::from(linkage), 0.0);
-    Start { design, setting, positions }
+    Start { design, setting, positions, scales: AS_WRITTEN }
 }

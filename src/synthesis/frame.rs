@@ -23,6 +23,7 @@ use crate::judge::warm::start_at;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{FourBar, LinkageType, MAX_MAGNITUDE, NaturalCoordinates};
 use crate::record::{Candidate, CurveErrorRecord};
+use crate::task::ranges::Reference;
 use crate::task::similarity::{Numbering, Similarity};
 use crate::task::spec::{Method, ProblemSpec};
 use crate::task::{Problem, Return};
@@ -273,7 +274,7 @@ fn carried(
     let space = problem.space(linkage.side());
     let linkage = space.project_off_grid(&linkage, GRID, problem.task().size()).ok()?;
     let frame_deg = candidate.frame_deg.map(|frame| if by.mirrors { -frame } else { frame });
-    assess_on_curve(problem, &linkage, (&crank_deg, &t1_at), frame_deg, to_curve)
+    assess_on_curve(problem, &linkage, (&crank_deg, &t1_at), frame_deg.map(Reference::frame), to_curve)
 }
 
 /// Returns whether it makes no difference at which of its points the path begins: it is closed, no point counts twice,

@@ -10,13 +10,15 @@
 //! is linear in K at given offsets. Its least-squares solution over a grid of both offsets gives linkages near every good
 //! one, if each equation is weighted by the inverse of its derivative by psi_j, which makes an equation error an error of
 //! the output: a first solution gives the derivative, a second one the linkage. A negative p or r is the positive length at
-//! an offset that is half a turn greater. (Freudenstein 1955, An analytical approach to the design of four-link mechanisms.)
+//! an offset that is half a turn greater. Where ranges are free, the grid has a few scales of inputs and outputs too, and a
+//! drawn start has drawn ones. (Freudenstein 1955, An analytical approach to the design of four-link mechanisms.)
 
 use crate::mechanism::{AssemblyMode, Complex, CouplerSide};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::task::forms::design_space::{DesignSpace, Shape};
 use crate::task::forms::rows::nearest_type;
 use crate::task::forms::start::Start;
+use crate::task::ranges::{Ranges, Scales};
 use crate::task::spec::Limits;
 use crate::task::{AngleOffset, Link, Problem, Setting, Timing};
 use nalgebra::{Matrix3, Vector3};
@@ -24,6 +26,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Steps of half a turn of the grid of offsets.
 const GRID: usize = 24;
+/// The same where ranges are free, and the steps of each free range, evenly in its logarithm.
+const RANGED_GRID: usize = 12;
+const RANGE_STEPS: usize = 4;
 /// The most pairs that enter the linear solutions, evenly chosen.
 const MOST_PAIRS: usize = 48;
 /// One drawn start in so many has random lengths; the others have random offsets.
@@ -36,8 +41,11 @@ const EXACT_EVERY: usize = 2;
 pub(super) struct FunctionStarts<'a> {
     problem: &'a Problem,
     space: DesignSpace,
-    /// The inputs e^{i dphi_j} and outputs e^{i dpsi_j} of the pairs that enter the linear solutions.
+    /// The written inputs and outputs of the pairs that enter the linear solutions, radians.
+    angles: Vec<[f64; 2]>,
+    /// The same as directions e^{i h dphi_j} and e^{i k dpsi_j}, in the middle of the ranges.
     pairs: Vec<[Complex; 2]>,
+    ranges: Ranges,
     /// The shape in the middle of the design space, whose pivots starts have.
     middle: Shape,
     /// Whether the offsets of inputs and outputs are free.
@@ -52,12 +60,10 @@ impl<'a> FunctionStarts<'a> {
         let Timing::Prescribed { crank_angles, .. } = task.timing() else { return None };
         let n = crank_angles.len();
         let every = n.div_ceil(MOST_PAIRS);
-        let of = |j: usize| {
-            Some([Complex::from_polar(1.0, crank_angles[j]), Complex::from_polar(1.0, body.angles[j]?)])
-        };
+        let of = |j: usize| Some([crank_angles[j], body.angles[j]?]);
         // The last pair too.
         let last = ((n - 1) % every != 0).then_some(n - 1);
-        let pairs = (0..n).step_by(every).chain(last).filter_map(of).collect();
+        let angles: Vec<[f64; 2]> = (0..n).step_by(every).chain(last).filter_map(of).collect();
         let space = problem.space(problem.sides()[0]);
         let middle = space.bounds().map(|(low, high)| if low.is_finite() { 0.5 * (low + high) } else { 0.0 });
         let middle = space.shape(&middle)?;
@@ -66,7 +72,9 @@ impl<'a> FunctionStarts<'a> {
         Some(FunctionStarts {
             problem,
             space,
-            pairs,
+            pairs: turned(&angles, body.ranges().middle()),
+            angles,
+            ranges: body.ranges(),
             middle,
             free: [problem.offset_is_free(), output_is_free],
         })
@@ -74,11 +82,17 @@ impl<'a> FunctionStarts<'a> {
 
     /// Returns the starts at the least equation errors over the grid of offsets, the least first.
     pub(super) fn of_grid(&self) -> Vec<Start> {
-        let step = PI / GRID as f64;
-        let steps = self.free.map(|free| if free { GRID } else { 1 });
+        let grid = if self.ranges.are_written() { GRID } else { RANGED_GRID };
+        let step = PI / grid as f64;
+        let steps = self.free.map(|free| if free { grid } else { 1 });
         let mut minima: Vec<(f64, Start)> = Vec::new();
-        for &sign in self.problem.directions() {
-            let at = |i: usize, j: usize| self.solution(sign, [i as f64 * step, j as f64 * step], None);
+        let all = self.scales_of_grid().into_iter().map(|scales| (scales, turned(&self.angles, scales)));
+        let signs = self.problem.directions();
+        let all = all.flat_map(|at| signs.iter().map(move |sign| (*sign, at.clone())));
+        for (sign, (scales, pairs)) in all {
+            let at = |i: usize, j: usize| {
+                self.solution((&pairs, scales), sign, [i as f64 * step, j as f64 * step], None)
+            };
             let cells: Vec<Option<Solution>> =
                 (0..steps[0] * steps[1]).map(|k| at(k / steps[1], k % steps[1])).collect();
             let error = |i: usize, j: usize| {
@@ -89,7 +103,7 @@ impl<'a> FunctionStarts<'a> {
                 let (i, j) = (k / steps[1] + steps[0], k % steps[1] + steps[1]);
                 let around = [(1, 0), (1, 1), (1, 2), (0, 1), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2)];
                 let is_least = around.iter().all(|(di, dj)| error(i + di - 1, j + dj - 1) >= cell.error);
-                if is_least && let Some(start) = self.start(sign, cell) {
+                if is_least && let Some(start) = self.start(&pairs, sign, cell) {
                     minima.push((cell.error, start));
                 }
             }
@@ -98,18 +112,38 @@ impl<'a> FunctionStarts<'a> {
         minima.into_iter().map(|(_, start)| start).collect()
     }
 
+    /// Returns the scales of inputs and outputs of the grid: the middles of even steps of the free ranges.
+    fn scales_of_grid(&self) -> Vec<Scales> {
+        let of = |(low, high): (f64, f64)| -> Vec<f64> {
+            if low == high {
+                return vec![low];
+            }
+            let part = |i: usize| (i as f64 + 0.5) / RANGE_STEPS as f64;
+            (0..RANGE_STEPS).map(|i| low * (high / low).powf(part(i))).collect()
+        };
+        let [inputs, outputs] = self.ranges.bounds().map(of);
+        inputs.iter().flat_map(|input| outputs.iter().map(|output| [*input, *output])).collect()
+    }
+
     /// Draws a start; `None` if nothing can be made of the draw.
     pub(super) fn draw(&self, draws: &mut Stream) -> Option<Start> {
         let signs = self.problem.directions();
         let sign = signs[below(draws, signs.len())];
         let offsets = self.free.map(|free| if free { uniform(draws, 0.0, TAU) } else { 0.0 });
+        let written = self.ranges.are_written();
+        let scales = self.ranges.bounds().map(|(low, high)| match low < high {
+            true => uniform(draws, low.ln(), high.ln()).exp(),
+            false => low,
+        });
+        let of_scales = if written { Vec::new() } else { turned(&self.angles, scales) };
+        let pairs = if written { &self.pairs } else { &of_scales };
         if below(draws, RANDOM_EVERY) > 0 {
             let n = self.pairs.len();
             let through = (below(draws, EXACT_EVERY) == 0).then(|| {
                 let number = below(draws, usize::MAX >> 1);
                 [number % n, (number / n) % n, (number / n / n) % n]
             });
-            return self.start(sign, &self.solution(sign, offsets, through)?);
+            return self.start(pairs, sign, &self.solution((pairs, scales), sign, offsets, through)?);
         }
         let ground = self.ground().norm();
         let limits = self.space.link_limits();
@@ -118,13 +152,24 @@ impl<'a> FunctionStarts<'a> {
             (uniform(draws, low.ln(), limits.1.min(1e3 * ground).max(low).ln())).exp() / ground
         };
         let [crank, coupler, follower] = [length(limits[1]), length(limits[2]), length(limits[3])];
-        self.start(sign, &Solution { lengths: [crank, coupler, follower], offsets, error: 0.0 })
+        self.start(
+            pairs,
+            sign,
+            &Solution { lengths: [crank, coupler, follower], offsets, scales, error: 0.0 },
+        )
     }
 
-    /// Returns the linear solution at offsets, of all pairs or exactly through three of them; `None` if it is no linkage.
-    fn solution(&self, sign: f64, offsets: [f64; 2], through: Option<[usize; 3]>) -> Option<Solution> {
+    /// Returns the linear solution at offsets, of all pairs at their scales or exactly through three of them; `None` if it is no
+    /// linkage.
+    fn solution(
+        &self,
+        (pairs, scales): (&[[Complex; 2]], Scales),
+        sign: f64,
+        offsets: [f64; 2],
+        through: Option<[usize; 3]>,
+    ) -> Option<Solution> {
         let turns = offsets.map(|offset| Complex::from_polar(1.0, offset));
-        let all = || self.turned_pairs(sign, turns);
+        let all = || turned_pairs(pairs, sign, turns);
         let k = match through {
             Some(chosen) => solved(chosen.iter().filter_map(|j| all().nth(*j)).map(|pair| (pair, 1.0)))?,
             None => {
@@ -141,7 +186,7 @@ impl<'a> FunctionStarts<'a> {
         if !(q_sq > 0.0 && q_sq.is_finite() && p.is_finite() && r.is_finite()) {
             return None;
         }
-        let error = all()
+        let error: f64 = all()
             .map(|pair| {
                 let slope = slope(&k, pair);
                 let [e, f] = pair;
@@ -158,7 +203,8 @@ impl<'a> FunctionStarts<'a> {
                 *offset += PI;
             }
         }
-        Some(Solution { lengths: [p.abs(), q_sq.sqrt(), r.abs()], offsets: turned, error })
+        let error = error / (scales[1] * scales[1]);
+        Some(Solution { lengths: [p.abs(), q_sq.sqrt(), r.abs()], offsets: turned, scales, error })
     }
 
     /// Returns the vector from A to B.
@@ -166,16 +212,11 @@ impl<'a> FunctionStarts<'a> {
         self.middle.follower_pivot - self.middle.crank_pivot
     }
 
-    /// Returns the pairs as directions of crank and follower from the ground line.
-    fn turned_pairs(&self, sign: f64, [crank, follower]: [Complex; 2]) -> impl Iterator<Item = [Complex; 2]> {
-        self.pairs.iter().map(move |[e, f]| [e * crank, if sign < 0.0 { f.conj() } else { *f } * follower])
-    }
-
     /// Returns the start at a solution, in the assembly whose follower lies nearer at the middle pair.
-    fn start(&self, sign: f64, solution: &Solution) -> Option<Start> {
-        let Solution { lengths: [p, q, r], offsets, .. } = *solution;
+    fn start(&self, pairs: &[[Complex; 2]], sign: f64, solution: &Solution) -> Option<Start> {
+        let Solution { lengths: [p, q, r], offsets, scales, .. } = *solution;
         let turns = offsets.map(|offset| Complex::from_polar(1.0, offset));
-        let [e, f] = self.turned_pairs(sign, turns).nth(self.pairs.len() / 2)?;
+        let [e, f] = turned_pairs(pairs, sign, turns).nth(pairs.len() / 2)?;
         // D lies left of the line from C to B if t1 = 1; its place for the follower's angle that is wanted tells.
         let (c, d) = (e * p, Complex::new(1.0, 0.0) + f * r);
         let left = ((Complex::new(1.0, 0.0) - c).conj() * (d - c)).im;
@@ -187,7 +228,7 @@ impl<'a> FunctionStarts<'a> {
         let aim = if types.is_empty() { None } else { nearest_type(shape.links(), types) };
         let setting = Setting { aim, assembly, direction: sign, side: CouplerSide::Plus };
         let offset = if self.free[0] { offsets[0] + self.ground().arg() } else { 0.0 };
-        Some(Start { design: self.space.design(&shape, offset), setting, positions: Vec::new() })
+        Some(Start { design: self.space.design(&shape, offset), setting, positions: Vec::new(), scales })
     }
 }
 
@@ -199,8 +240,24 @@ const LEAST_SLOPE: f64 = 1e-4;
 struct Solution {
     lengths: [f64; 3],
     offsets: [f64; 2],
-    /// The sum of squared errors of the output, to first order.
+    scales: Scales,
+    /// The sum of squared errors of the output, to first order, in parts of its scale.
     error: f64,
+}
+
+/// Returns the directions of inputs and outputs (radians) at scales.
+fn turned(angles: &[[f64; 2]], [h, k]: Scales) -> Vec<[Complex; 2]> {
+    let direction = |angle: f64| Complex::from_polar(1.0, angle);
+    angles.iter().map(|[input, output]| [direction(h * input), direction(k * output)]).collect()
+}
+
+/// Returns pairs as directions of crank and follower from the ground line.
+fn turned_pairs(
+    pairs: &[[Complex; 2]],
+    sign: f64,
+    [crank, follower]: [Complex; 2],
+) -> impl Iterator<Item = [Complex; 2]> {
+    pairs.iter().map(move |[e, f]| [e * crank, if sign < 0.0 { f.conj() } else { *f } * follower])
 }
 
 /// Returns the derivative of Freudenstein's equation by the output angle.

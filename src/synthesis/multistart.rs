@@ -21,11 +21,12 @@ use crate::numbers::arithmetic::streams::stream;
 use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, solve};
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Evaluations};
 use crate::task::forms::design_space::Design;
-use crate::task::forms::fits::{FitUser, design_of, on_fit};
+use crate::task::forms::fits::{FitUser, design_of, on_fit, own_scales};
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedPathFit;
 use crate::task::forms::torus::{MotionFit, PathFit, Positions};
+use crate::task::ranges::Reference;
 use crate::task::spec::Objective;
 use crate::task::{AngleOffset, Problem, Setting, Timing};
 use rayon::prelude::*;
@@ -279,6 +280,7 @@ impl FitUser for Fitting<'_> {
                 design: design_of(&end.x),
                 setting: start.setting,
                 positions: end.state,
+                scales: own_scales(&end.x),
             }),
         }
     }
@@ -332,16 +334,16 @@ fn judged_with(problem: &Problem, end: &Start, to_curve: Option<CurveErrorRecord
         };
         let written = problem.spec().task.timing.as_ref()?;
         debug_assert_eq!(written.crank_deg.len(), crank_angles.len());
-        let mut crank_deg: Vec<f64> =
-            written.crank_deg.iter().map(|deg| base + problem.run(end.setting.direction) * deg).collect();
+        let run = end.scales[0] * problem.run(end.setting.direction);
+        let mut crank_deg: Vec<f64> = written.crank_deg.iter().map(|deg| base + run * deg).collect();
         for (j, ([e, _], deg)) in end.positions.iter().zip(&mut crank_deg).enumerate() {
             if task.is_untimed(j) {
                 *deg += wrapped(e.arg() - deg.to_radians()).to_degrees();
             }
         }
         let assemblies = vec![end.setting.assembly; crank_deg.len()];
-        let frame = frame_of(problem, &linkage, &crank_deg, end.setting.direction);
-        return assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), frame, to_curve);
+        let own = reference_of(problem, &linkage, &crank_deg, (end.setting.direction, end.scales[1]));
+        return assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), own, to_curve);
     }
     let assemblies = end.positions.iter().map(|[e, u]| assembly_of(&shape, *e, *u)).collect::<Vec<_>>();
     let linkage = shape.linkage(assemblies[0]).ok()?;
@@ -349,23 +351,29 @@ fn judged_with(problem: &Problem, end: &Start, to_curve: Option<CurveErrorRecord
     let (crank_deg, assemblies) = unwrapped(problem, &linkage, angles, assemblies);
     let linkage = space.project(&linkage).ok()?;
     // Unless deviations count one by one, the frame is the one of the least errors.
-    let frame = (problem.frame_is_free() && reserve(problem, 1000) > 0)
-        .then(|| wrapped(space.offset(&end.design)).to_degrees());
-    assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), frame, to_curve)
+    let own = (problem.frame_is_free() && reserve(problem, 1000) > 0)
+        .then(|| Reference::frame(wrapped(space.offset(&end.design)).to_degrees()));
+    assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), own, to_curve)
 }
 
-/// Returns the frame of a body, or of a function's outputs with this sign, at prescribed crank angles, in degrees, where
+/// Returns the frame of a body, or of a function's outputs with this sign and scale, at prescribed crank angles, where
 /// deviations count one by one; `None` where the one of the least squared errors is wanted.
-fn frame_of(problem: &Problem, linkage: &FourBar, crank_deg: &[f64], sign: f64) -> Option<f64> {
+fn reference_of(
+    problem: &Problem,
+    linkage: &FourBar,
+    crank_deg: &[f64],
+    (sign, scale): (f64, f64),
+) -> Option<Reference> {
     let (task, objective) = (problem.task(), problem.spec().solve.objective);
     let body = task.body().filter(|_| reserve(problem, 1000) > 0)?;
     let sign = if problem.is_function() { sign } else { 1.0 };
     let apart = |(angle, deg): (&Option<f64>, &f64)| {
         let joints = linkage.position_with(deg.to_radians(), linkage.assembly()).joints()?;
         let line = body.line([linkage.follower_pivot(), joints.crank_pin, joints.follower_pin]);
-        Some(sign * (*angle)? - line.arg())
+        Some(sign * scale * (*angle)? - line.arg())
     };
     let apart: Vec<Option<f64>> = body.angles.iter().zip(crank_deg).map(apart).collect();
     let largest = objective == Objective::MaxDeviation;
-    Some(body.frame_within(&apart, task.weights(), largest).to_degrees())
+    let frame = body.frame_within(&apart, task.weights(), largest);
+    Some(Reference { frame_deg: frame.to_degrees(), scale })
 }

@@ -181,6 +181,16 @@ fn free(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyM
     Some(unwrapped(problem, linkage, angles, assemblies))
 }
 
+/// Scales of a function's inputs at which a linkage is tried, where their range is free.
+const SCALES: usize = 40;
+
+/// Returns the scales of a function's inputs at which a linkage is tried: 1 alone where their range is as written.
+fn scales_tried(problem: &Problem) -> Vec<f64> {
+    let (low, high) = problem.task().ranges().input;
+    let part = |i: usize| i as f64 / (SCALES - 1) as f64;
+    if low == high { vec![low] } else { (0..SCALES).map(|i| low * (high / low).powf(part(i))).collect() }
+}
+
 fn prescribed(
     problem: &Problem,
     linkage: &FourBar,
@@ -188,11 +198,13 @@ fn prescribed(
 ) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let written = &problem.spec().task.timing.as_ref()?.crank_deg;
     let assemblies = vec![linkage.assembly(); written.len()];
+    let scales = scales_tried(problem);
+    // A direction is a sign with the scale of a function's inputs.
     let angles = |direction: f64, base_deg: f64| -> Vec<f64> {
         written.iter().map(|deg| base_deg + direction * deg).collect()
     };
     // The inputs of a function run as they are written, whichever way its outputs count.
-    let directions = if problem.is_function() { &[1.0] } else { problem.directions() };
+    let directions = if problem.is_function() { scales.as_slice() } else { problem.directions() };
     let sum = |direction: f64, base_deg: f64| {
         let radians: Vec<f64> = angles(direction, base_deg).iter().map(|d| d.to_radians()).collect();
         problem.task().errors(linkage, &radians, &assemblies, None).map_or(f64::INFINITY, |e| e.objective)
@@ -203,23 +215,80 @@ fn prescribed(
         AngleOffset::Free => None,
     };
     if let Some(base) = given {
-        return Some((angles(1.0, base), assemblies));
+        let all = directions.iter().map(|direction| (sum(*direction, base), *direction));
+        let (least, mut direction) = all.min_by(|one, other| one.0.total_cmp(&other.0))?;
+        if let [one, other, ..] = scales.as_slice() {
+            let (low, high) = problem.task().ranges().input;
+            let between = ((direction * one / other).max(low), (direction * other / one).min(high));
+            let refined = least_between(between, THIRDS, |scale| sum(scale, base));
+            direction = if sum(refined, base) <= least { refined } else { direction };
+        }
+        return Some((angles(direction, base), assemblies));
     }
     let step = 360.0 / DEFAULT_SAMPLES as f64;
     let samples = |&direction: &f64| (0..DEFAULT_SAMPLES).map(move |i| (direction, step * i as f64));
     let all = directions.iter().flat_map(samples);
     let measured = all.map(|(direction, offset)| (sum(direction, offset), direction, offset));
     let (least, direction, offset) = measured.min_by(|one, other| one.0.total_cmp(&other.0))?;
-    let (mut low, mut high) = (offset - step, offset + step);
-    for _ in 0..100 {
+    let of_offset = |direction: f64, offset: f64| {
+        let refined = least_between((offset - step, offset + step), THIRDS, |offset| sum(direction, offset));
+        (sum(direction, refined), refined)
+    };
+    let (mut best, mut at) = (least, (direction, offset));
+    let (found, refined) = of_offset(direction, offset);
+    if found <= best {
+        (best, at) = (found, (direction, refined));
+    }
+    if let [one, other, ..] = scales.as_slice() {
+        // The scale of the inputs too, between those that were tried on either side of the best ones.
+        let (low, high) = problem.task().ranges().input;
+        let around = |scale: f64, offset: f64| {
+            let places = (-BESIDE..=BESIDE).map(|k| offset + f64::from(k) * BESIDE_STEP_DEG);
+            let nearest = places.map(|offset| (sum(scale, offset), offset));
+            let (_, offset) = nearest.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or((0.0, offset));
+            let beside = (offset - BESIDE_STEP_DEG, offset + BESIDE_STEP_DEG);
+            let refined = least_between(beside, THIRDS / 2, |offset| sum(scale, offset));
+            (sum(scale, refined), refined)
+        };
+        let mut tried: Vec<(f64, f64, f64)> = directions
+            .iter()
+            .filter_map(|direction| {
+                let of_one = samples(direction).map(|(scale, offset)| (sum(scale, offset), scale, offset));
+                of_one.min_by(|one, other| one.0.total_cmp(&other.0))
+            })
+            .collect();
+        tried.sort_by(|one, other| one.0.total_cmp(&other.0));
+        for (_, scale, offset) in tried.into_iter().take(SCALES_REFINED) {
+            let between = ((scale * one / other).max(low), (scale * other / one).min(high));
+            let scale = least_between(between, THIRDS / 3, |scale| around(scale, offset).0);
+            let (found, offset) = around(scale, offset);
+            if found <= best {
+                (best, at) = (found, (scale, offset));
+            }
+        }
+    }
+    best.is_finite().then(|| (angles(at.0, at.1), assemblies))
+}
+
+/// The places on either side of an offset at which it is looked for anew when the scale of the inputs changes, and their steps,
+/// degrees.
+const BESIDE: i32 = 20;
+const BESIDE_STEP_DEG: f64 = 1.0;
+/// Scales of the inputs from which the best one is refined.
+const SCALES_REFINED: usize = 3;
+
+/// Steps by thirds to the last digit.
+const THIRDS: usize = 100;
+
+/// Returns the place of the least value between two, by thirds.
+fn least_between((mut low, mut high): (f64, f64), thirds: usize, value: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..thirds {
         let third = (high - low) / 3.0;
-        if sum(direction, low + third) <= sum(direction, high - third) {
+        if value(low + third) <= value(high - third) {
             high -= third;
         } else {
             low += third;
         }
     }
-    let refined = 0.5 * (low + high);
-    let offset = if sum(direction, refined) <= least { refined } else { offset };
-    least.is_finite().then(|| (angles(direction, offset), assemblies))
+    0.5 * (low + high)
 }

@@ -18,7 +18,7 @@ use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, Goal, solve
 use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::record::{Candidate, Evaluations, Figure};
 use crate::task::Problem;
-use crate::task::forms::fits::{FitUser, design_of, on_fit};
+use crate::task::forms::fits::{FitUser, design_of, on_fit, own_scales};
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::{PathFit, Positions};
 use crate::task::requirement::RequirementKind;
@@ -177,6 +177,7 @@ impl FitUser for Polishing<'_> {
                 design: design_of(&end.x),
                 setting: *setting,
                 positions: end.state,
+                scales: own_scales(&end.x),
             }),
         };
         (fitted, end.deviation)
@@ -186,7 +187,8 @@ impl FitUser for Polishing<'_> {
 /// Returns whether a limit is active at a candidate: then the last digits are worth a polish.
 fn held(candidate: &Candidate) -> bool {
     let at = |value: f64, limit: f64| (value - limit).abs() <= AT_LIMIT * limit.abs().max(1.0);
-    candidate.requirements.iter().any(|r| match (&r.value, &r.limit) {
+    let mut told = candidate.requirements.iter().filter(|r| !RequirementKind::names_line(&r.name));
+    told.any(|r| match (&r.value, &r.limit) {
         (Figure::Number(value), Figure::Number(limit)) => at(*value, *limit),
         (Figure::Number(value), Figure::Numbers(limits)) => {
             let fixed = limits.iter().all(|limit| Some(limit) == limits.first());
@@ -314,6 +316,11 @@ fn moved(problem: &Problem, start: &Start, draws: &mut Stream) -> Start {
     for ((value, trust), &(low, high)) in near.design.iter_mut().zip(trust).zip(space.bounds()) {
         let by = HOP * trust.max(0.1 * value.abs()) * uniform(draws, -1.0, 1.0);
         *value = (*value + by).max(low).min(high);
+    }
+    let ranges = problem.task().ranges();
+    if !ranges.are_written() {
+        let moved = near.scales.map(|scale| scale * (1.0 + HOP * FRAME_TRUST * uniform(draws, -1.0, 1.0)));
+        near.scales = ranges.nearest(moved);
     }
     near
 }

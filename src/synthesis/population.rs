@@ -17,9 +17,10 @@ use crate::numbers::optimise::random_search::{UniformSampling, UniformSamplingPa
 use crate::numbers::optimise::saved::Resumable;
 use crate::record::{Candidate, Evaluations, Reason};
 use crate::task::Timing;
+use crate::task::forms::body_fitness::BodyFitness;
 use crate::task::forms::fitness::PathFitness;
 use crate::task::forms::reduced::refusal;
-use crate::task::forms::start::Start;
+use crate::task::forms::start::{AS_WRITTEN, Start};
 use crate::task::spec::Objective;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -63,6 +64,11 @@ pub fn search(
     evaluations: u64,
 ) -> Result<(Found, Vec<Start>), PopulationError> {
     let problem = context.problem;
+    if problem.task().body().is_some() {
+        let why = "the ranges of a function are free".to_owned();
+        let fitness = BodyFitness::new(problem).ok_or(PopulationError::Form { why })?;
+        return search_in(context, &fitness, which, evaluations);
+    }
     if !problem.spec().solve.moves_reduced() {
         return search_in(context, &PathFitness::new(problem), which, evaluations);
     }
@@ -191,6 +197,28 @@ fn search_in<F: Searched>(
     Ok((found(candidates, outcome.evaluations - skipped, reason), starts))
 }
 
+impl Searched for BodyFitness<'_> {
+    fn positions(&self) -> u64 {
+        self.positions_per_evaluation()
+    }
+
+    fn start(&self, x: &[f64], context: Context<'_>) -> Option<Start> {
+        let problem = self.problem();
+        let reading = self.read(x);
+        let space = self.space(reading.setting.side);
+        let design = space.from_free(x);
+        let positions = match problem.task().timing() {
+            Timing::Prescribed { .. } => Vec::new(),
+            Timing::Free => {
+                let sampled =
+                    BodyFitness::positions(self, &space.shape(&design)?, space.offset(&design), &reading)?;
+                settle_positions(context.of(problem), &design, reading.setting, sampled)?
+            }
+        };
+        Some(Start { design, setting: reading.setting, positions, scales: AS_WRITTEN })
+    }
+}
+
 impl Searched for PathFitness<'_> {
     fn positions(&self) -> u64 {
         self.positions_per_evaluation()
@@ -210,6 +238,6 @@ impl Searched for PathFitness<'_> {
                 settle_positions(context.of(problem), &design, reading.setting, sampled)?
             }
         };
-        Some(Start { design, setting: reading.setting, positions })
+        Some(Start { design, setting: reading.setting, positions, scales: AS_WRITTEN })
     }
 }

@@ -30,7 +30,7 @@ use crate::task::forms::fitness::{PathFitness, Reading};
 use crate::task::forms::linear_fit::{KnownPivots, Ratios};
 use crate::task::forms::projection::{ProjectedFit, Projection, Solution, ratio_box};
 use crate::task::forms::reduced::known_ground;
-use crate::task::forms::start::Start;
+use crate::task::forms::start::{AS_WRITTEN, Start};
 use crate::task::requirement::DEFAULT_LINK_RATIO;
 use crate::task::{Problem, Timing};
 use std::f64::consts::{PI, TAU};
@@ -300,13 +300,18 @@ impl Searched for ReducedFitness<'_> {
         let space = self.physical.space(reading.setting.side);
         let design = space.design(&shape, offset);
         if !self.forms.is_empty() {
-            return Some(Start { design, setting: reading.setting, positions: Vec::new() });
+            return Some(Start {
+                design,
+                setting: reading.setting,
+                positions: Vec::new(),
+                scales: AS_WRITTEN,
+            });
         }
         // Clamped to the bounds, the shape may meet the points at other positions.
         let shape = space.shape(&design)?;
         let reading = self.physical.read_free(reading.setting.side, &shape);
         let sampled = self.physical.positions(&shape, &reading)?;
         let positions = settle_positions(context, &design, reading.setting, sampled)?;
-        Some(Start { design, setting: reading.setting, positions })
+        Some(Start { design, setting: reading.setting, positions, scales: AS_WRITTEN })
     }
 }

@@ -14,7 +14,7 @@ use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::numbers::optimise::population::PopulationProblem;
 use crate::task::forms::design_space::{DesignSpace, Shape};
 use crate::task::forms::linear_fit::{KnownPivots, Ratios, assembly_sign, coupler_direction, fit};
-use crate::task::forms::start::Start;
+use crate::task::forms::start::{AS_WRITTEN, Start};
 use crate::task::forms::timed::{TimedMotionFit, TimedPathFit};
 use crate::task::forms::torus::Positions;
 use crate::task::{AngleOffset, Problem, Setting, Timing};
@@ -145,7 +145,7 @@ impl<'a> Starts<'a> {
                     None => TimedPathFit::new(self.problem, setting)?.attached(&design)?,
                     Some(_) => TimedMotionFit::new(self.problem, setting)?.attached(&design)?,
                 };
-                Some(Start { design, setting, positions })
+                Some(Start { design, setting, positions, scales: AS_WRITTEN })
             }
             Timing::Free => {
                 let along = on_ellipse.unwrap_or(&self.arc);
@@ -241,7 +241,7 @@ fn start_from(space: &DesignSpace, setting: Setting, shape: &Shape, positions: &
     let ground = shape.follower_pivot - shape.crank_pivot;
     let turn = ground / ground.norm();
     let positions = positions.iter().map(|[e, u]| [e * turn, u * turn]).collect();
-    Start { design: space.design(shape, 0.0), setting, positions }
+    Start { design: space.design(shape, 0.0), setting, positions, scales: AS_WRITTEN }
 }
 
 /// The motion of a crank along its circuit, from the first point of the target to the last.

@@ -40,7 +40,7 @@ use crate::record::{Candidate, Evaluations, Repeats};
 use crate::task::forms::fits::own_frame;
 use crate::task::forms::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
 use crate::task::forms::rows::{Motion, Requirements, nearest_type};
-use crate::task::forms::start::Start;
+use crate::task::forms::start::{AS_WRITTEN, Start};
 use crate::task::forms::timed::TimedMotionFit;
 use crate::task::{AngleOffset, Problem, Setting, Timing};
 use std::f64::consts::{PI, TAU};
@@ -367,10 +367,16 @@ impl<'a> Timed<'a> {
         };
         let (one, other) = (direction * self.span.0 + base, direction * self.span.1 + base);
         let motion = Motion::Stretch(one.min(other), one.max(other), assembly);
-        let start = Start { design: space.design(shape, *offset), setting, positions: Vec::new() };
+        let start = Start {
+            design: space.design(shape, *offset),
+            setting,
+            positions: Vec::new(),
+            scales: AS_WRITTEN,
+        };
         let pins = problem.spec().require.pins_in.as_ref();
-        let frame =
-            pins.and_then(|_| own_frame(&TimedMotionFit::new(problem, setting)?.unknowns(&start.design)));
+        let frame = pins.and_then(|_| {
+            own_frame(&TimedMotionFit::new(problem, setting)?.unknowns(&start.design, start.scales))
+        });
         let lack = self.requirements.lack(aim, shape, &motion, frame);
         let outside = space.excess(shape) / problem.task().size();
         Some((start, outside + lack))

@@ -7,7 +7,9 @@
 //! | [`forms`] | the task as mathematics: design space, residuals with derivatives, requirements, fitness |
 //! | `kind` | the kinds of tasks, with their words |
 //! | `limits` | intervals in which the parameters of a design lie |
+//! | [`pivot_on`] | lines and points on which the fixed pivots are to lie |
 //! | [`problem`] | a checked `ProblemSpec`, and the discrete choices of a search besides the design vector (`Setting`) |
+//! | [`ranges`] | free ranges of a function: the scales of its inputs and outputs |
 //! | [`region`] | regions of the plane: a box along the axes, or a polygon |
 //! | [`requirement`] | requirements on a linkage, one file each: key, parsing, limits with their outward side, unit and words |
 //! | [`resampling`] | smoothing and resampling of digitised points into a target |
@@ -22,7 +24,9 @@ pub mod defect;
 pub mod forms;
 mod kind;
 mod limits;
+pub mod pivot_on;
 pub mod problem;
+pub mod ranges;
 pub mod region;
 pub mod requirement;
 pub mod resampling;

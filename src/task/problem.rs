@@ -172,7 +172,7 @@ impl Problem {
             &self.spec.design,
             &self.task,
             self.offset_is_free() || self.frame_is_free(),
-            self.spec.require.pivots_in.as_ref().map(Region::corners),
+            (self.spec.require.pivots_in.as_ref().map(Region::corners), self.spec.require.pivot_on.as_ref()),
             side,
         )
     }

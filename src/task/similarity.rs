@@ -10,6 +10,7 @@
 //! These keep boxes along the axes boxes along the axes, so every key of a problem has its image.
 
 use crate::task::limits::Limits;
+use crate::task::pivot_on::PivotOn;
 use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, DirectionPolicy, ProblemSpec};
 
@@ -193,6 +194,9 @@ impl ProblemSpec {
             Some(Region::Polygon(points)) => points.iter_mut().for_each(|point| *point = by.point(*point)),
             None => {}
         }
+        for place in require.pivot_on.iter_mut().flat_map(PivotOn::points_mut) {
+            *place = by.point(*place);
+        }
         if let Some(region) = &mut require.pins_in {
             *region = by.in_the_body(region);
         }
@@ -272,6 +276,7 @@ impl ProblemSpec {
         let require = &mut spec.require;
         let region = require.pivots_in.iter_mut().flat_map(Region::points_mut);
         region.chain(require.footprint_in.iter_mut().flatten()).for_each(|x| *x = at(*x));
+        require.pivot_on.iter_mut().flat_map(PivotOn::points_mut).flatten().for_each(|x| *x = at(*x));
         require.pins_in.iter_mut().flat_map(Region::points_mut).for_each(|x| *x = at(*x));
         for x in [&mut require.extent_max, &mut require.longest_max].into_iter().flatten() {
             *x = of_itself(*x);
@@ -301,6 +306,7 @@ impl ProblemSpec {
         let mut limits: Vec<f64> =
             pivots.chain(lengths.into_iter().flatten()).flat_map(|Limits(low, high)| [low, high]).collect();
         limits.extend(boxes);
+        limits.extend(self.require.pivot_on.iter().flat_map(PivotOn::points).flatten());
         limits.extend([self.require.extent_max, self.require.longest_max].into_iter().flatten());
         limits.push(match self.require.direction {
             DirectionPolicy::Any => 0.0,
@@ -351,7 +357,7 @@ mod tests {
             coupler_x: Some(pair(-3.0, 3.0)),
             coupler_y: Some(pair(-3.0, 3.0)),
         };
-        let require = "pivots_in = [-3.5, -2.5, 3.25, 4.0]\nfootprint_in = [-9.0, -8.0, 7.0, 6.0]\n\
+        let require = "pivots_in = [-3.5, -2.5, 3.25, 4.0]\npivot_on = { A = [[1.0, 0.5], [-2.5, 1.5]], B = [[2.0, 3.0]] }\nfootprint_in = [-9.0, -8.0, 7.0, 6.0]\n\
                        extent_max = 17.5\nlongest_max = 11.0\ndirection = \"ccw\"\ntransmission_deg_min = 20";
         let mut spec = crate::synthesis::fixture::problem(&points, true, require).spec().clone();
         spec.design = design;

@@ -7,6 +7,7 @@ use crate::mechanism::MAX_MAGNITUDE;
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
 use crate::task::Task;
+use crate::task::pivot_on::PivotOn;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -45,6 +46,9 @@ impl ProblemSpec {
         }
         if let Some(region) = &mut spec.require.pivots_in {
             region.points_mut().zip(by.iter().cycle()).for_each(|(x, by)| *x += by);
+        }
+        for place in spec.require.pivot_on.iter_mut().flat_map(PivotOn::points_mut) {
+            *place = [place[0] + by[0], place[1] + by[1]];
         }
         if let Some(b) = &mut spec.require.footprint_in {
             *b = [b[0] + by[0], b[1] + by[1], b[2] + by[0], b[3] + by[1]];
@@ -300,6 +304,10 @@ pub enum Measure {
     Largest,
     /// The largest error in parts of its point's tolerance.
     LargestPart,
+    /// The weighted sum of squared errors of an output whose range is free, in parts of that range.
+    SumInRange,
+    /// The largest error of such an output, likewise.
+    LargestInRange,
 }
 
 /// The variables in which the population searches move.
@@ -382,6 +390,12 @@ impl ProblemSpec {
     pub fn measure(&self) -> Measure {
         let path = &self.task;
         match self.solve.objective {
+            _ if path.output.as_ref().is_some_and(|output| output.ranges.output_range_deg.is_some()) => {
+                match self.solve.objective {
+                    Objective::SumOfSquares => Measure::SumInRange,
+                    Objective::MaxDeviation => Measure::LargestInRange,
+                }
+            }
             Objective::SumOfSquares if path.weight.iter().flatten().any(|w| *w != 1.0) => {
                 Measure::WeightedSum
             }

@@ -12,6 +12,7 @@
 
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{Complex, MAX_MAGNITUDE};
+use crate::task::ranges::Ranges;
 
 /// The reference direction of prescribed crank angles.
 #[derive(
@@ -90,7 +91,7 @@ impl Sense {
 }
 
 /// The link whose angles are wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Link {
     /// The coupler, which carries a body.
     Coupler,
@@ -100,6 +101,8 @@ pub enum Link {
         offset: AngleOffset,
         /// The sense in which they count.
         sense: Sense,
+        /// The ranges of inputs and outputs, where they are free.
+        ranges: Ranges,
     },
 }
 
@@ -147,6 +150,14 @@ impl Body {
         match self.link {
             Link::Coupler => &[1.0],
             Link::Follower { sense, .. } => sense.signs(),
+        }
+    }
+
+    /// Returns the bounds of the scales of inputs and outputs: 1 unless a function's ranges are free.
+    pub fn ranges(&self) -> Ranges {
+        match self.link {
+            Link::Coupler => Ranges::default(),
+            Link::Follower { ranges, .. } => ranges,
         }
     }
 
@@ -249,6 +260,11 @@ pub enum TaskError {
     /// All inputs of a function are equal.
     #[error("all inputs are equal: the crank would stand still")]
     ConstantInput,
+    /// An output has a tolerance while the range of the outputs is free.
+    #[error(
+        "tolerances of the output do not go with a free output range: errors in degrees shrink with the range"
+    )]
+    ToleranceOfFreeRange,
     /// A function has no crank angles.
     #[error("a function needs a crank angle for each output")]
     NoInput,
@@ -426,6 +442,9 @@ impl Task {
         if range <= SMALLEST_SIZE {
             return Err(TaskError::ConstantOutput);
         }
+        if body.ranges().free()[1] && body.tolerances.is_some() {
+            return Err(TaskError::ToleranceOfFreeRange);
+        }
         Ok(Task {
             points: Vec::new(),
             weights: options.weights.unwrap_or_else(|| vec![1.0; body.angles.len()]),
@@ -527,6 +546,11 @@ impl Task {
     /// Returns whether the task is a function: angles of the follower, and no places.
     pub fn is_function(&self) -> bool {
         self.body.as_ref().is_some_and(|body| matches!(body.link, Link::Follower { .. }))
+    }
+
+    /// Returns the bounds of the scales of a function's inputs and outputs: 1 unless its ranges are free.
+    pub fn ranges(&self) -> Ranges {
+        self.body.as_ref().map_or_else(Ranges::default, Body::ranges)
     }
 
     /// Returns the timing.

@@ -4,6 +4,7 @@
 //! given or free. Files and records call a list without body angles `path` and one with them `motion`. A `function` has no
 //! places: its targets are angles of the follower at given crank angles.
 
+use crate::task::ranges::{Ranges, RangesSpec};
 use crate::task::resampling::{resample, smooth};
 use crate::task::{AngleOffset, Body, Link, Sense, Task, TaskError, TaskKind, TaskOptions, Timing};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -39,6 +40,8 @@ pub struct OutputSpec {
     pub offset: AngleOffset,
     /// The sense in which they count.
     pub sense: Sense,
+    /// The ranges that are free.
+    pub ranges: RangesSpec,
     /// The formula of which the pairs were taken; absent: they were given.
     pub of: Option<FormulaSpec>,
 }
@@ -161,6 +164,7 @@ impl TaskSpec {
                 link: self.output.as_ref().map_or(Link::Coupler, |output| Link::Follower {
                     offset: output.offset,
                     sense: output.sense,
+                    ranges: Ranges::of(&output.ranges, self.written_ranges_deg()),
                 }),
                 tolerances: body.tolerance_deg.as_ref().map(|list| list.iter().map(radians).collect()),
             }),
@@ -197,6 +201,16 @@ impl TaskSpec {
         let outputs = self.body.iter().filter(|_| self.is_function()).flat_map(|body| &body.angle_deg);
         let inputs = self.timing.iter().flat_map(|timing| &timing.crank_deg);
         inputs.zip(outputs).filter_map(|(input, output)| Some([*input, (*output)?])).collect()
+    }
+
+    /// Returns the ranges of the inputs and the outputs of a function as they are written, degrees.
+    pub fn written_ranges_deg(&self) -> [f64; 2] {
+        let pairs = self.pairs();
+        let range = |of: fn(&[f64; 2]) -> f64| {
+            let all = || pairs.iter().map(of);
+            all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
+        };
+        [range(|pair| pair[0]), range(|pair| pair[1])]
     }
 
     /// Returns the number of targets.
@@ -285,6 +299,9 @@ struct FunctionTable {
     output_offset: AngleOffset,
     /// The sense in which output angles count.
     sense: Sense,
+    /// The ranges that are free.
+    #[serde(flatten)]
+    ranges: RangesSpec,
     /// One positive weight a pair; they enter the objective only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weight: Option<Vec<f64>>,
@@ -304,6 +321,7 @@ impl FunctionTable {
             input_offset,
             output_offset,
             sense,
+            ranges,
             weight,
             tolerance_deg,
             of,
@@ -313,7 +331,7 @@ impl FunctionTable {
             weight,
             timing: Some(TimingSpec { crank_deg: input_deg, offset: input_offset, free: Vec::new() }),
             body: Some(BodySpec { angle_deg, angle_weight: DEGREES, tolerance_deg }),
-            output: Some(OutputSpec { offset: output_offset, sense, of }),
+            output: Some(OutputSpec { offset: output_offset, sense, ranges, of }),
             ..TaskSpec::default()
         }
     }
@@ -329,6 +347,7 @@ impl FunctionTable {
             input_offset,
             output_offset: output.offset,
             sense: output.sense,
+            ranges: output.ranges,
             weight: spec.weight,
             tolerance_deg,
             of: output.of,

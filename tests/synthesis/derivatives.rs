@@ -126,7 +126,9 @@ fn residuals_tangents_and_constraints_agree_with_central_differences() {
             if errors.len() == 60 {
                 break;
             }
-            let Some(Start { design, setting, mut positions }) = starts.draw(&mut draws) else { continue };
+            let Some(Start { design, setting, mut positions, .. }) = starts.draw(&mut draws) else {
+                continue;
+            };
             let error = if positions.is_empty() {
                 let fit = TimedPathFit::new(&problem, setting).expect("the timing is prescribed");
                 if fit.cost(&design, &Vec::new()).is_none() {

@@ -18,10 +18,10 @@ use linkwright::{AssemblyMode, CouplerSide, FourBar, Problem, Record, load_probl
 use std::path::Path;
 
 /// A linkage with the angles of its crank, and of its follower from the ground line, radians.
-struct Generated {
-    linkage: FourBar,
-    crank: Vec<f64>,
-    follower: Vec<f64>,
+pub(crate) struct Generated {
+    pub(crate) linkage: FourBar,
+    pub(crate) crank: Vec<f64>,
+    pub(crate) follower: Vec<f64>,
 }
 
 /// The four-bar with these ratios on the ground from (0, 0) to (1, 0).
@@ -32,7 +32,7 @@ fn four_bar(p: f64, q: f64, r: f64, t1: i32) -> Option<FourBar> {
 }
 
 /// The follower's angle by circles that meet, without any of the library's kinematics; `None` where they do not.
-fn follower_angle(linkage: &FourBar, crank: f64, t1: f64) -> Option<f64> {
+pub(crate) fn follower_angle(linkage: &FourBar, crank: f64, t1: f64) -> Option<f64> {
     let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
     let (cx, cy) = (a.re + linkage.crank() * crank.cos(), a.im + linkage.crank() * crank.sin());
     let (x, y) = (b.re - cx, b.im - cy);
@@ -47,7 +47,7 @@ fn follower_angle(linkage: &FourBar, crank: f64, t1: f64) -> Option<f64> {
 }
 
 /// Draws a linkage whose follower moves smoothly over `n` inputs.
-fn generated(draws: &mut Stream, n: usize) -> Generated {
+pub(crate) fn generated(draws: &mut Stream, n: usize) -> Generated {
     loop {
         let [p, q, r] = [(); 3].map(|()| uniform(draws, -0.9, 0.9).exp());
         let t1 = if uniform(draws, 0.0, 1.0) < 0.5 { 1 } else { -1 };
@@ -72,7 +72,7 @@ fn generated(draws: &mut Stream, n: usize) -> Generated {
 }
 
 /// The problem of these pairs, radians.
-fn problem(inputs: &[f64], outputs: &[f64], lines: &str) -> ProblemSpec {
+pub(crate) fn problem(inputs: &[f64], outputs: &[f64], lines: &str) -> ProblemSpec {
     let degrees = |list: &[f64]| list.iter().map(|angle| angle.to_degrees()).collect::<Vec<f64>>();
     parse(&format!(
         "format = 1\n[task.function]\ninput_deg = {:?}\noutput_deg = {:?}\n{lines}",
@@ -83,9 +83,10 @@ fn problem(inputs: &[f64], outputs: &[f64], lines: &str) -> ProblemSpec {
 }
 
 /// Checks the figures of a record's candidates against [`follower_angle`], and the record by `verify`.
-fn assert_true(record: &Record) {
+pub(crate) fn assert_true(record: &Record) {
     let spec = &record.problem.resolved;
     let pairs = spec.task.pairs();
+    let written = spec.task.written_ranges_deg();
     for candidate in &record.candidates {
         let linkage = &candidate.linkage;
         let ground = linkage.ground_angle();
@@ -94,13 +95,17 @@ fn assert_true(record: &Record) {
             candidate.output_offset_deg.expect("a function"),
         );
         let sign = if candidate.sense == Some(Sense::Opposite) { -1.0 } else { 1.0 };
+        // Where a range is free the pairs tell proportions alone.
+        let h = candidate.input_range_deg.map_or(1.0, |range| range / written[0]);
+        let k = candidate.output_range_deg.map_or(1.0, |range| range / written[1]);
         let (mut sum, mut most) = (0.0, 0.0_f64);
         for (j, [input, output]) in pairs.iter().enumerate() {
             // The crank stands where the offset and the input say.
-            let crank = ground + (input_offset + input).to_radians();
+            let crank = ground + (input_offset + h * input).to_radians();
             assert!(wrapped(crank - candidate.crank_deg[j].to_radians()).abs() < 1e-9);
             let turned = follower_angle(linkage, crank, candidate.t1_at[j].sign()).expect("it closes");
-            let error = wrapped(ground + (output_offset + sign * output).to_radians() - turned).to_degrees();
+            let error =
+                wrapped(ground + (output_offset + sign * k * output).to_radians() - turned).to_degrees();
             sum += error * error;
             most = most.max(error.abs());
         }
@@ -109,6 +114,10 @@ fn assert_true(record: &Record) {
         assert!((of_output.rms_deg - rms).abs() < 1e-9 * (1.0 + rms), "{} {rms}", of_output.rms_deg);
         assert!((of_output.max_deg - most).abs() < 1e-9 * (1.0 + most), "{} {most}", of_output.max_deg);
         assert!((candidate.error.rms - of_output.rms_deg).abs() < 1e-9);
+        if spec.solve.objective == Objective::SumOfSquares && spec.task.weight.is_none() {
+            let (objective, in_range) = (candidate.error.objective, sum / (k * k));
+            assert!((objective - in_range).abs() < 1e-9 * (1.0 + in_range), "{objective} {in_range}");
+        }
     }
     assert_eq!(verify(record).expect("a record"), []);
 }
@@ -182,7 +191,7 @@ fn derivatives_of_a_function_agree_with_central_differences() {
             let turn = if input == "free" { of.crank[0] } else { 0.0 };
             let design = space.design(&Shape::from(&of.linkage), turn);
             let fit = FunctionFit::new(&problem, setting).expect("it is a function");
-            let mut x = fit.unknowns(&design);
+            let mut x = fit.unknowns(&design, [1.0; 2]);
             x[2] += 0.01;
             x[3] += 0.02;
             let mut steps = [1e-6; 11];

@@ -1,6 +1,7 @@
 //! Searches: what they find, what a requirement costs, what they say about it.
 
 mod answers;
+mod body_populations;
 mod certificate;
 mod certificate_axis;
 mod certificate_leaves;
@@ -13,11 +14,13 @@ mod conflicts;
 mod costs;
 mod derivatives;
 mod deviation;
+mod free_ranges;
 mod functions;
 mod invariance;
 mod ladder;
 mod motion;
 mod partly_timed;
+mod pivot_lines;
 #[path = "../common/poses.rs"]
 mod poses;
 mod projection;

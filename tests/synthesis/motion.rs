@@ -11,7 +11,7 @@ use linkwright::internals::numbers::optimise::levenberg_marquardt::{
 use linkwright::internals::synthesis::multistart::judged;
 use linkwright::internals::task::Setting;
 use linkwright::internals::task::forms::design_space::Shape;
-use linkwright::internals::task::forms::start::Start;
+use linkwright::internals::task::forms::start::{AS_WRITTEN, Start};
 use linkwright::internals::task::forms::torus::MotionFit;
 use linkwright::internals::task::similarity::{Numbering, Similarity};
 use linkwright::spec::ProblemSpec;
@@ -119,7 +119,7 @@ fn from_the_truth(problem: &Problem, taken: &Taken) -> f64 {
     let design = problem.space(side).design(&shape, taken.frame);
     let fit = MotionFit::new(problem, setting).in_order(&design, &positions);
     let end = solve(&fit, design, positions, &TO_THE_END, &|| false);
-    let end = Start { design: end.x, setting, positions: end.state };
+    let end = Start { design: end.x, setting, positions: end.state, scales: AS_WRITTEN };
     let candidate = judged(problem, &end).filter(|candidate| candidate.accepted);
     candidate.map_or(f64::INFINITY, |candidate| candidate.error.objective)
 }

@@ -15,10 +15,10 @@ use linkwright::internals::task::Setting;
 use linkwright::internals::task::forms::design_space::Shape;
 use linkwright::internals::task::forms::fits::design_of;
 use linkwright::internals::task::forms::projection::{Batch, ProjectedFit, Projection};
-use linkwright::internals::task::forms::start::Start;
+use linkwright::internals::task::forms::start::{AS_WRITTEN, Start};
 use linkwright::internals::task::forms::timed::TimedMotionFit;
 use linkwright::internals::task::similarity::{Numbering, Similarity};
-use linkwright::{AssemblyMode, Problem};
+use linkwright::{AssemblyMode, Complex, Problem};
 
 const OFFSETS: [&str; 3] = ["free", "ground", "fixed"];
 
@@ -45,8 +45,8 @@ fn truth(problem: &Problem, taken: &Taken, offset: &str) -> (Setting, [f64; 10])
 fn from_the_truth(problem: &Problem, taken: &Taken, offset: &str) -> f64 {
     let (setting, design) = truth(problem, taken, offset);
     let fit = TimedMotionFit::new(problem, setting).expect("the timing is prescribed");
-    let end = solve(&fit, fit.unknowns(&design), Vec::new(), &TO_THE_END, &|| false);
-    let start = Start { design: design_of(&end.x), setting, positions: Vec::new() };
+    let end = solve(&fit, fit.unknowns(&design, AS_WRITTEN), Vec::new(), &TO_THE_END, &|| false);
+    let start = Start { design: design_of(&end.x), setting, positions: Vec::new(), scales: AS_WRITTEN };
     let candidate = judged(problem, &start).filter(|candidate| candidate.accepted);
     candidate.map_or(f64::INFINITY, |candidate| candidate.error.objective)
 }
@@ -96,11 +96,19 @@ fn derivatives_of_a_timed_motion_agree_with_central_differences() {
         let mut errors = Vec::new();
         for _ in 0..30 {
             let taken = taken(draws, 7, 0.02);
-            let lines = "type = [\"crank-rocker\"]\ntransmission_deg_min = 30\npins_in = [[-2, -1], [3, -2], [1, 4]]\n";
-            let problem = Problem::new(drawn(&taken, offset, lines)).expect("a problem");
+            // Slanted lines through its own pivots.
+            let [a, b] = [taken.linkage.crank_pivot(), taken.linkage.follower_pivot()];
+            let line = |p: Complex, x: f64, y: f64| [[p.re, p.im], [p.re + x, p.im + y]];
+            let lines = format!(
+                "type = [\"crank-rocker\"]\ntransmission_deg_min = 30\npins_in = [[-2, -1], [3, -2], [1, 4]]\n\
+                 pivot_on = {{ A = {:?}, B = {:?} }}\n",
+                line(a, 3.0, 1.0),
+                line(b, -1.0, 2.0)
+            );
+            let problem = Problem::new(drawn(&taken, offset, &lines)).expect("a problem");
             let (setting, design) = truth(&problem, &taken, offset);
             let fit = TimedMotionFit::new(&problem, setting).expect("the timing is prescribed");
-            let mut x = fit.unknowns(&design);
+            let mut x = fit.unknowns(&design, AS_WRITTEN);
             x[10] += 0.1;
             let size = problem.task().size();
             let mut steps = [1e-5 * size; 11];
@@ -139,7 +147,7 @@ fn the_reduced_form_of_a_motion_has_the_cost_of_its_linkage_and_the_gradient_of_
         let space = problem.space(side);
         let timed =
             TimedMotionFit::new(&problem, Setting { side, ..setting }).expect("the timing is prescribed");
-        let there = timed.unknowns(&space.design(&solution.shape, solution.offset));
+        let there = timed.unknowns(&space.design(&solution.shape, solution.offset), AS_WRITTEN);
         let Some(cost) = timed.cost(&there, &Vec::new()) else { continue };
         let size = problem.task().size();
         assert!(

@@ -234,3 +234,29 @@ fn the_page_of_a_front_is_one_file_in_which_no_name_becomes_markup() {
     let none = front_html(&Record { front: None, ..record });
     assert!(none.contains("The front is empty"));
 }
+
+#[test]
+fn a_front_over_a_family_of_exact_linkages_is_true_and_its_errors_are_not_compared_by_their_rounding() {
+    let folder = TempDir::new().expect("a folder");
+    for problem in ["folding-bed", "sofa-bed"] {
+        let file = root().join(format!("problems/motion/{problem}.toml")).display().to_string();
+        let arguments = ["front", &file, "--quiet", "--points", "10", "--out", problem];
+        let set = ["--set", "solve.evaluations=30000"];
+        let answer = linkwright(folder.path(), &[&arguments[..], &set[..]].concat());
+        assert_eq!(answer.code, 0, "{}", answer.stderr);
+        let answer = linkwright(folder.path(), &["verify", problem]);
+        assert_eq!(answer.code, 0, "{}{}", answer.stdout, answer.stderr);
+        let record = record(&folder.path().join(problem));
+        let members = record.front.expect("a front").members;
+        let size = record.problem.resolved.task.to_task().expect("a task").size();
+        let exact: Vec<_> = members.iter().map(|m| m.figures).filter(|f| f.rms < 1e-12 * size).collect();
+        assert!(members.len() >= 8 && exact.len() > 1, "{problem}: {} of {}", exact.len(), members.len());
+        // Of exact ones, the better transmitting is the larger.
+        for (i, one) in exact.iter().enumerate() {
+            for other in &exact[..i] {
+                let steeper = one.transmission_deg > other.transmission_deg;
+                assert_eq!(steeper, one.extent > other.extent, "{problem}: {one:?} {other:?}");
+            }
+        }
+    }
+}

@@ -57,11 +57,11 @@ impl Options {
 
     /// Returns the number of runs for these problems.
     pub fn runs(&self, problems: &[ProblemFile]) -> u64 {
-        let of = |known: Known| match known {
-            Known::Path { .. } => self.seeds + POPULATIONS.len() as u64 * self.population_seeds(),
-            Known::Motion { .. } | Known::Function { .. } => self.seeds,
+        let of = |problem: &ProblemFile| {
+            let populations = populations_of(&problem.spec).map_or(0, |methods| methods.len() as u64);
+            self.seeds + populations * self.population_seeds()
         };
-        problems.iter().filter_map(|problem| known(problem).ok()).map(of).sum()
+        problems.iter().filter(|problem| known(problem).is_ok()).map(of).sum()
     }
 }
 
@@ -127,8 +127,8 @@ fn known(file: &ProblemFile) -> Result<Known, &'static str> {
     }
 }
 
-/// Runs a suite: each problem from seeds 1 to [`Options::seeds`] with the method of its file, then a path with each of
-/// [`POPULATIONS`] with the median number of evaluations of the first method. Problems without an expected
+/// Runs a suite: each problem from seeds 1 to [`Options::seeds`] with the method of its file, then with each of
+/// [`POPULATIONS`] that suits it with the median number of evaluations of the first method. Problems without an expected
 /// `best_known_sum_sq` (of a path) or `objective` (of a motion) are left out, and named with the reason.
 ///
 /// `cancel` ends the current run; that run does not count, and the results before it are returned.
@@ -205,10 +205,9 @@ impl Runner<'_> {
     ) -> Result<ProblemResult, RunError> {
         let problem = Problem::new(file.spec.clone())?;
         let (exact, populations) = match known {
-            Known::Path { .. } => (exact_sum_sq(&problem), Ok(POPULATIONS)),
-            Known::Motion { .. } => (exact_cost(&problem), Err("population searches do not take poses")),
-            Known::Function { .. } => {
-                (exact_cost(&problem), Err("population searches do not take functions"))
+            Known::Path { .. } => (exact_sum_sq(&problem), populations_of(&file.spec)),
+            Known::Motion { .. } | Known::Function { .. } => {
+                (exact_cost(&problem), populations_of(&file.spec))
             }
         };
         let bar = Bar { goal: known.goal(), best_known: known.best(), exact };
@@ -318,6 +317,18 @@ impl Runner<'_> {
     }
 }
 
+/// Returns the population searches that suit a problem, or the reason why there are none.
+fn populations_of(spec: &ProblemSpec) -> Result<[Method; 2], &'static str> {
+    let task = &spec.task;
+    if task.output.as_ref().is_some_and(|output| output.ranges.is_free()) {
+        return Err("population searches do not take free ranges");
+    }
+    if task.body.is_some() && task.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
+        return Err("population searches do not take free crank angles among prescribed ones");
+    }
+    Ok(POPULATIONS)
+}
+
 /// Returns the errors of an answer of a motion or of a function; `None` for one of a path.
 fn motion_errors(problem: &Problem, candidate: &Candidate) -> Option<MotionErrors> {
     let angle = candidate.error.of_link()?;
@@ -411,10 +422,14 @@ mod tests {
     }
 
     #[test]
-    fn the_number_of_runs_counts_no_population_searches_of_motions_and_nothing_that_is_left_out() {
+    fn the_number_of_runs_counts_the_population_searches_that_suit_and_nothing_that_is_left_out() {
         let options = Options { seeds: 10, ..Options::default() };
-        let problems = [motion(5, "[expect]\nobjective = 0\n"), motion(5, ""), path("")];
-        assert_eq!(options.runs(&problems), 10);
+        let free = parsed(
+            "format = 1\n[task.function]\nof = \"x^2\"\nover = [0, 1]\ninput_range_deg = 60\noutput_range_deg = \"free\"\n\
+             [expect]\nobjective = 0\n",
+        );
+        let problems = [motion(5, "[expect]\nobjective = 0\n"), motion(5, ""), path(""), free];
+        assert_eq!(options.runs(&problems), 10 + 2 * 5 + 10);
     }
 
     #[test]

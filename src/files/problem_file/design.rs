@@ -178,6 +178,32 @@ pub(super) fn against_requirements(
     Ok(Some(toml.at(&format!("design.{long}"), message).with_help(help)))
 }
 
+/// Refuses lines of `pivot_on` that pass by the bounds of their pivot, given or by default, or by the box of both.
+pub(super) fn against_lines(toml: &TomlText<'_>, design: &DesignSpec, require: &RequireSpec) -> Checked<()> {
+    let loci = require.pivot_on.as_ref().map_or([None; 2], |pivot_on| pivot_on.both());
+    let region = require.pivots_in.as_ref().map(Region::corners);
+    for ((key, pivot), locus) in
+        [("A", design.crank_pivot), ("B", design.follower_pivot)].into_iter().zip(loci)
+    {
+        let Some(locus) = locus else { continue };
+        let bounds = pivot.map(|[x, y]| [x.0, y.0, x.1, y.1]);
+        for (corners, name) in [(bounds, format!("design.{key}")), (region, "pivots_in".to_owned())] {
+            let Some(corners @ [x0, y0, x1, y1]) = corners else { continue };
+            if !locus.meets(corners) {
+                let [x0, y0, x1, y1] = [x0, y0, x1, y1].map(rounded);
+                let message =
+                    format!("the line of {key} passes by {name}, the box from ({x0}, {y0}) to ({x1}, {y1})");
+                let help = match name.as_str() {
+                    "pivots_in" => "move the line, or widen pivots_in".to_owned(),
+                    _ => format!("move the line, or give {key} = [[xmin, xmax], [ymin, ymax]] in [design]"),
+                };
+                return toml.refuse("require.pivot_on", message, help);
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Returns the bounds of the lengths of the vectors in a box.
 fn norm_range([x, y]: [Limits; 2]) -> Limits {
     let least = |l: Limits| if l.0 > 0.0 { l.0 } else { (-l.1).max(0.0) };

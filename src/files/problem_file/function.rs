@@ -2,6 +2,7 @@
 
 use super::lists::Lists;
 use super::path::{TaskRead, task_read};
+use super::ranges::{RangeNumbers, free_ranges};
 use super::raw::RawFunction;
 use super::target::{Source, Target, Whereabouts};
 use crate::files::diagnostic::{Checked, quoted};
@@ -9,6 +10,7 @@ use crate::files::points_file::MAX_POINTS;
 use crate::files::toml_text::TomlText;
 use crate::files::toml_values::numbers;
 use crate::task::AngleOffset;
+use crate::task::ranges::WRITTEN_RANGE_DEG;
 use crate::task::spec::{BodySpec, DEGREES, FormulaSpec, OutputSpec, TaskSpec, TimingSpec};
 use exmex::prelude::*;
 
@@ -35,6 +37,7 @@ pub(super) fn function_of(
             return toml.refuse(&format!("task.function.{key}"), message, help);
         }
     }
+    let ranges = free_ranges(toml, function)?;
     let mut target = Target::of_function(toml, function, whereabouts)?;
     for (j, pair) in target.points.iter().enumerate() {
         if let Some(angle) = pair.iter().find(|angle| angle.abs() > MOST_DEG) {
@@ -68,7 +71,7 @@ pub(super) fn function_of(
         weight,
         timing: Some(TimingSpec { crank_deg, offset: function.input_offset, free: Vec::new() }),
         body: Some(BodySpec { angle_deg, angle_weight: DEGREES, tolerance_deg }),
-        output: Some(OutputSpec { offset: function.output_offset, sense: function.sense, of }),
+        output: Some(OutputSpec { offset: function.output_offset, sense: function.sense, ranges, of }),
         ..TaskSpec::default()
     };
     task_read(toml, target, spec)
@@ -87,19 +90,21 @@ pub(super) fn of_formula(toml: &TomlText<'_>, function: &RawFunction) -> Checked
         let message = format!("over = [{0}, {0}]: the range is empty", over[0]);
         return refuse("over", message, "write the first and the last x of the formula");
     }
-    let range = |name: &str, given: Option<f64>, link: &str| match given {
+    let range = |name: &str, given: Option<RangeNumbers>, link: &str| match given {
         None => {
-            let help = format!("add {name} = how far the {link} turns, degrees");
+            let help = format!("add {name} = how far the {link} turns, degrees, or {name} = \"free\"");
             toml.refuse_key("task.function", format!("{name} is missing"), help)
         }
-        Some(range) if range == 0.0 || range.abs() > MOST_DEG => {
+        Some(RangeNumbers::Given(range)) if range == 0.0 || range.abs() > MOST_DEG => {
             let message = format!("{name} = {range}: the {link} turns by no such angle");
             toml.refuse(&key(name), message, "write degrees, such as 60 or 90")
         }
-        Some(range) => Ok(range),
+        Some(RangeNumbers::Given(range)) => Ok(range),
+        // Only the proportions of the pairs count.
+        Some(RangeNumbers::Free(_)) => Ok(WRITTEN_RANGE_DEG),
     };
-    let input = range("input_range_deg", function.input_range_deg.map(|range| range.0), "crank")?;
-    let output = range("output_range_deg", function.output_range_deg.map(|range| range.0), "follower")?;
+    let input = range("input_range_deg", function.input_range_deg, "crank")?;
+    let output = range("output_range_deg", function.output_range_deg, "follower")?;
     let samples = function.samples.as_ref().map_or(SAMPLES, |count| count.0);
     if !(2..=MAX_POINTS as u64).contains(&samples) {
         let message = format!("samples = {samples} is not between 2 and {MAX_POINTS}");

@@ -12,6 +12,7 @@ mod lists;
 mod motion;
 mod overrides;
 mod path;
+mod ranges;
 mod raw;
 mod sweeping;
 mod target;
@@ -35,8 +36,8 @@ use crate::task::forms::precision::precision_points;
 use crate::task::forms::reduced;
 use crate::task::requirement::{RawRequire, RequirementKind};
 use crate::task::spec::{
-    MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, MOST_PICKS_WITHIN, Method, Objective, ProblemSpec,
-    RequireSpec, SolveSpec, TaskSpec, TimingSpec,
+    DesignSpec, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, MOST_PICKS_WITHIN, Method, Objective,
+    ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
 use crate::task::{Problem, TaskKind};
 use raw::{RawSolve, RawTask};
@@ -187,6 +188,7 @@ fn parse_at(
     warnings.extend(in_vain);
     method_of(&toml, &path, solve.method)?;
     pins_of(&toml, &path, &require)?;
+    lines_of(&toml, (&path, &design), &require, solve.method)?;
     if solve.objective == Objective::MaxDeviation {
         warnings.extend(deviation_of(&toml, &path)?);
     }
@@ -195,6 +197,7 @@ fn parse_at(
         expect::check(&toml, expect, &path)?;
     }
     design.resolve(&task);
+    design::against_lines(&toml, &design, &require)?;
     let spec = ProblemSpec { task: path, design, require, solve };
     continuation_of(&toml, &spec)?;
     warnings.extend(variables_of(&toml, &spec)?);
@@ -371,7 +374,32 @@ fn pins_of(toml: &TomlText<'_>, task: &TaskSpec, require: &RequireSpec) -> Check
     toml.refuse("require.pins_in", format!("pins_in is a part of a body, and a {kind} has no body"), help)
 }
 
-/// Checks that a method searches for poses, in a motion.
+/// Checks that pivots may be asked to lie on lines: not those of a function, and by a method that can hold them there.
+fn lines_of(
+    toml: &TomlText<'_>,
+    (task, design): (&TaskSpec, &DesignSpec),
+    require: &RequireSpec,
+    method: Method,
+) -> Checked<()> {
+    let Some(pivot_on) = &require.pivot_on else { return Ok(()) };
+    if task.is_function() {
+        let help = "remove it, and give the pivots in [design]: A = [0, 0], B = [100, 0]";
+        return toml.refuse("require.pivot_on", "pivot_on is not for functions", help);
+    }
+    // Then B follows from A and the ground line, and is no coordinate.
+    let polar =
+        design.follower_pivot.is_none() && (design.ground.is_some() || design.ground_angle_deg.is_some());
+    let is_population = matches!(method, Method::Genetic | Method::DifferentialEvolution);
+    if polar && is_population && pivot_on.follower_pivot.is_some() {
+        let message =
+            format!("method = \"{}\" cannot hold B on a line where [design] gives the ground", method.name());
+        let help = "write method = \"auto\" or \"least-squares\", or give B its bounds in [design]";
+        return toml.refuse("solve.method", message, help);
+    }
+    Ok(())
+}
+
+/// Checks that a method suits the task.
 fn method_of(toml: &TomlText<'_>, task: &TaskSpec, method: Method) -> Checked<()> {
     match method {
         Method::Genetic | Method::DifferentialEvolution
@@ -386,15 +414,15 @@ fn method_of(toml: &TomlText<'_>, task: &TaskSpec, method: Method) -> Checked<()
                 "write method = \"auto\" or \"least-squares\", or give every target a crank angle",
             )
         }
-        Method::Genetic | Method::DifferentialEvolution if task.body.is_some() => toml.refuse(
-            "solve.method",
-            format!(
-                "method = \"{}\" is not supported for {} yet",
-                method.name(),
-                if task.is_function() { "functions" } else { "poses" }
-            ),
-            "write method = \"auto\" or \"least-squares\"; they need fewer evaluations",
-        ),
+        Method::Genetic | Method::DifferentialEvolution
+            if task.output.as_ref().is_some_and(|output| output.ranges.is_free()) =>
+        {
+            toml.refuse(
+                "solve.method",
+                format!("method = \"{}\" does not support free ranges", method.name()),
+                "write method = \"auto\" or \"least-squares\", or fix the ranges",
+            )
+        }
         _ => Ok(()),
     }
 }
@@ -438,6 +466,15 @@ fn variables_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Checked<Option<Diagn
         let message = format!("variables = \"reduced\" is not read by method = \"{method}\"");
         let help = "it is for genetic and differential-evolution; remove it, or choose one of them";
         return Ok(Some(toml.at("solve.variables", message).with_help(help)));
+    }
+    if spec.task.body.is_some() {
+        let noun = if spec.task.is_function() { "functions" } else { "poses" };
+        let help = "write variables = \"nine\", or method = \"auto\"";
+        return toml.refuse(
+            "solve.variables",
+            format!("variables = \"reduced\" is for paths, not for {noun}"),
+            help,
+        );
     }
     // Faults of the task itself have been reported before.
     match Problem::new(spec.clone()).ok().and_then(|problem| reduced::refusal(&problem)) {

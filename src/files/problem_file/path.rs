@@ -152,6 +152,9 @@ fn explain_task(toml: &TomlText<'_>, target: &Target, spec: &TaskSpec, error: &T
         TaskError::ConstantInput | TaskError::ConstantOutput | TaskError::NoInput => target
             .at_all(toml, error.to_string())
             .with_help("give at least two pairs whose inputs and outputs differ"),
+        TaskError::ToleranceOfFreeRange => toml
+            .at("task.function.output_range_deg", error.to_string())
+            .with_help("fix the range, output_range_deg = 60 say, or remove the tolerance"),
         TaskError::NoAngle => target.at_all(toml, "no pose has an angle".into()).with_help(
             "give at least one pose an angle: [x, y, degrees]; for points alone write [task.path] with points = [..]",
         ),

@@ -2,6 +2,7 @@
 //! these types.
 
 use super::Expect;
+use super::ranges::RangeNumbers;
 use crate::files::toml_values::{
     BoundedXY, Bounds, Count, CrankAngle, Number, OneOrEach, OnlyTable, PoseNumbers, XY,
 };
@@ -77,10 +78,12 @@ pub(crate) struct RawFunction {
     pub of: Option<String>,
     /// The first and the last x of the formula.
     pub over: Option<XY>,
-    /// How far the crank turns over the formula's range, degrees.
-    pub input_range_deg: Option<Number>,
-    /// How far the follower turns between the least and the greatest value of the formula, degrees.
-    pub output_range_deg: Option<Number>,
+    /// How far the crank turns over the formula's range, degrees; or "free" (30 to 180 degrees) or bounds [least, greatest]:
+    /// the range is an unknown too. With pairs, a free range leaves only the proportions of the inputs.
+    pub input_range_deg: Option<RangeNumbers>,
+    /// How far the follower turns between the least and the greatest value of the formula, degrees; or free, likewise: errors
+    /// are then measured in parts of the range.
+    pub output_range_deg: Option<RangeNumbers>,
     /// The number of pairs taken of the formula, evenly in x; 61 where silent.
     pub samples: Option<Count>,
     /// "free": inputs count from any angle of the crank; "ground": from the line A to B.

@@ -1,5 +1,6 @@
 //! Reads the targets of a task from the file itself, or from a CSV or a drawing beside it.
 
+use super::ranges::RangeNumbers;
 use super::raw::{RawFunction, RawMotion, RawPath};
 use crate::files::diagnostic::{Checked, Diagnostic, counted, quoted};
 use crate::files::points_file;
@@ -178,13 +179,19 @@ impl Target {
         }
         let of_formula = [
             ("over", function.over.is_some()),
-            ("input_range_deg", function.input_range_deg.is_some()),
-            ("output_range_deg", function.output_range_deg.is_some()),
+            ("input_range_deg", matches!(function.input_range_deg, Some(RangeNumbers::Given(_)))),
+            ("output_range_deg", matches!(function.output_range_deg, Some(RangeNumbers::Given(_)))),
             ("samples", function.samples.is_some()),
         ];
         if let Some((key, _)) = of_formula.iter().find(|(_, there)| *there && function.of.is_none()) {
             let message = format!("{key} belongs to a formula, and there is none");
-            return refuse(key, message, "remove it, or write of = \"a formula in x\"");
+            let help = match key.ends_with("range_deg") {
+                true => {
+                    "remove it, write it \"free\" for pairs in proportion, or write of = \"a formula in x\""
+                }
+                false => "remove it, or write of = \"a formula in x\"",
+            };
+            return refuse(key, message, help);
         }
         let (points, source) = match source {
             Some("input_deg") => (Self::pairs_here(toml, function)?, Source::File),

@@ -10,6 +10,7 @@ mod extent_max;
 mod link_ratio;
 mod linkage_type;
 mod longest_max;
+mod pivot_on;
 mod tolerance;
 mod transmission;
 
@@ -68,6 +69,7 @@ impl Judged<'_> {
             RequirementKind::Transmission => transmission::judged(self),
             RequirementKind::LinkRatio => link_ratio::judged(self),
             RequirementKind::PivotsIn => boxes::pivots(self),
+            RequirementKind::PivotOn => pivot_on::judged(self),
             RequirementKind::PinsIn => boxes::pins(self),
             RequirementKind::FootprintIn => boxes::footprint(self),
             RequirementKind::ExtentMax => extent_max::judged(self),

@@ -5,6 +5,7 @@ use crate::judge::assess::assess_on_curve;
 use crate::mechanism::{AssemblyMode, FourBar};
 use crate::record::Candidate;
 use crate::task::Problem;
+use crate::task::ranges::Reference;
 use std::fmt::{Debug, Display};
 
 /// The relative part of the tolerance of figures ..
@@ -109,7 +110,7 @@ impl<'a> Comparison<'a> {
     pub fn judged(
         &mut self,
         (linkage, crank_deg, t1_at): (&FourBar, &[f64], &[AssemblyMode]),
-        frame_deg: Option<f64>,
+        own: Option<Reference>,
         open: &str,
     ) -> Option<Candidate> {
         let n = self.problem.task().len();
@@ -118,7 +119,7 @@ impl<'a> Comparison<'a> {
             self.differ("the number of crank_deg and t1_at", has, format!("{n} points"));
             return None;
         }
-        let found = assess_on_curve(self.problem, linkage, (crank_deg, t1_at), frame_deg, None);
+        let found = assess_on_curve(self.problem, linkage, (crank_deg, t1_at), own, None);
         if found.is_none() {
             self.differ("the linkage", "closed at every point", open);
         }

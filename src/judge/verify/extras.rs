@@ -91,6 +91,7 @@ impl Comparison<'_> {
             self.differ("the coupler point", "the candidate's", format!("elsewhere at point {i}"));
         }
         self.assembly(&recorded.linkage, &recorded.t1_at);
-        self.timing(&recorded.linkage, &recorded.crank_deg);
+        // A function has no cognates.
+        self.timing(&recorded.linkage, &recorded.crank_deg, 1.0);
     }
 }

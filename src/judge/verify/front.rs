@@ -5,7 +5,7 @@
 
 use super::Comparison;
 use crate::judge::figures::figures;
-use crate::judge::trade_off::{are_equal, dominates, knees};
+use crate::judge::trade_off::{Wishes, are_equal, dominates, knees};
 use crate::record::{
     Axis, Candidate, EQUAL_FIGURES, Figures, Front, LEAST_AXES, MOST_AXES, MOST_MEMBERS, Member, Record,
 };
@@ -33,13 +33,17 @@ impl Comparison<'_> {
             return;
         }
         let n = self.problem.task().len();
+        let wishes = Wishes::of(self.problem, &front.axes);
         for axis in front.axes.iter().filter(|axis| matches!(axis, Axis::Rms | Axis::Max)) {
-            let least =
-                front.members.iter().map(|member| member.figures.of(*axis)).fold(f64::INFINITY, f64::min);
+            let least = front
+                .members
+                .iter()
+                .map(|member| wishes.loss(&member.figures, *axis))
+                .fold(f64::INFINITY, f64::min);
             let is_closer = |candidate: &&Candidate| {
                 let whole = candidate.crank_deg.len() == n && candidate.t1_at.len() == n;
                 let found = if whole && candidate.accepted { figures(self.problem, candidate) } else { None };
-                found.is_some_and(|found| found.of(*axis) < least * (1.0 - EQUAL_FIGURES))
+                found.is_some_and(|found| wishes.loss(&found, *axis) < least * (1.0 - EQUAL_FIGURES))
             };
             if let Some(closer) = record.candidates.iter().find(is_closer) {
                 let found = format!("without candidate {}, whose {} is smaller", closer.rank, axis.name());
@@ -101,12 +105,13 @@ impl Comparison<'_> {
     /// Checks that no member dominates or equals another, that they are in their order, and the knees.
     fn trade_off(&mut self, front: &Front) {
         let all: Vec<Figures> = front.members.iter().map(|member| member.figures).collect();
+        let wishes = Wishes::of(self.problem, &front.axes);
         for (i, one) in all.iter().enumerate() {
             for (j, other) in all.iter().enumerate().filter(|(j, _)| i != *j) {
-                if dominates(&front.axes, one, other) {
+                if dominates(&wishes, one, other) {
                     self.differ(&format!("members {}", j + 1), "a member", format!("dominated by {}", i + 1));
                 }
-                if i < j && are_equal(&front.axes, one, other) {
+                if i < j && are_equal(&wishes, one, other) {
                     self.differ(&format!("members {}", j + 1), "a member", format!("equal to {}", i + 1));
                 }
             }

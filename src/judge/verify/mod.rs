@@ -20,7 +20,7 @@ use crate::judge::rank::{compare, exact_objective};
 use crate::mechanism::FourBar;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::record::digest::{ProblemError, digest};
-use crate::record::{AngleErrorRecord, Candidate, Cost, CurveErrorRecord, FORMAT, Record};
+use crate::record::{AngleErrorRecord, Candidate, Cost, CurveErrorRecord, FORMAT, MET_TOLERANCE, Record};
 use crate::task::Problem;
 use crate::task::spec::Objective;
 use crate::task::{AngleOffset, Timing};
@@ -185,7 +185,9 @@ impl Comparison<'_> {
     /// Checks every figure and verdict of a candidate; returns whether it could be judged.
     fn candidate(&mut self, recorded: &Candidate) -> bool {
         let at = (&recorded.linkage, recorded.crank_deg.as_slice(), recorded.t1_at.as_slice());
-        let Some(found) = self.judged(at, recorded.own_frame_deg(), "open at one of them") else {
+        let Some(found) =
+            self.judged(at, recorded.own_reference(&self.problem.spec().task), "open at one of them")
+        else {
             return false;
         };
         let word = |there: bool| if there { "there" } else { "absent" };
@@ -213,7 +215,8 @@ impl Comparison<'_> {
         self.same("defects", defects(recorded), defects(&found));
         self.assembly(&recorded.linkage, &recorded.t1_at);
         self.costs(recorded, &found);
-        self.timing(&recorded.linkage, &recorded.crank_deg);
+        let [scale, _] = recorded.scales(&self.problem.spec().task);
+        self.timing(&recorded.linkage, &recorded.crank_deg, scale);
         self.requirements(recorded, &found);
         true
     }
@@ -223,6 +226,10 @@ impl Comparison<'_> {
         let offsets = [
             ("input_offset_deg", recorded.input_offset_deg, found.input_offset_deg),
             ("output_offset_deg", recorded.output_offset_deg, found.output_offset_deg),
+        ];
+        let ranges = [
+            ("input_range_deg", recorded.input_range_deg, found.input_range_deg),
+            ("output_range_deg", recorded.output_range_deg, found.output_range_deg),
         ];
         for (name, recorded, found) in offsets {
             match (recorded, found) {
@@ -237,7 +244,29 @@ impl Comparison<'_> {
                 }
             }
         }
+        self.ranges(ranges);
         self.alike("sense", &recorded.sense, &found.sense);
+    }
+
+    /// Compares the free ranges of a function, and checks that each lies within its bounds.
+    fn ranges(&mut self, ranges: [(&str, Option<f64>, Option<f64>); 2]) {
+        let bounds =
+            self.problem.spec().task.output.as_ref().map_or([None; 2], |output| output.ranges.bounds_deg());
+        for ((name, recorded, found), bounds) in ranges.into_iter().zip(bounds) {
+            match (recorded, found, bounds) {
+                (Some(recorded), Some(found), Some([low, high])) => {
+                    self.number(name, recorded, found, 360.0);
+                    let slack = MET_TOLERANCE * high;
+                    if !(low - slack..=high + slack).contains(&recorded) {
+                        self.differ(name, recorded, format!("from {low} to {high}"));
+                    }
+                }
+                (recorded, found, _) => {
+                    let word = |there: bool| if there { "there" } else { "absent" };
+                    self.same(name, word(recorded.is_some()), word(found.is_some()));
+                }
+            }
+        }
     }
 
     fn errors(&mut self, recorded: &Candidate, found: &Candidate) {
@@ -381,7 +410,7 @@ impl Comparison<'_> {
     }
 
     /// Checks that the crank angles are the prescribed ones, in whichever direction the timing lets them run.
-    fn timing(&mut self, linkage: &FourBar, crank_deg: &[f64]) {
+    fn timing(&mut self, linkage: &FourBar, crank_deg: &[f64], scale: f64) {
         let Timing::Prescribed { offset, .. } = self.problem.task().timing() else { return };
         let Some(written) = &self.problem.spec().task.timing else { return };
         let task = self.problem.task();
@@ -395,10 +424,11 @@ impl Comparison<'_> {
             off.fold(0.0, f64::max)
         };
         let off_base = |ground: f64| {
-            off(1.0).max(wrapped((first - (written_first + ground)).to_radians()).to_degrees().abs())
+            off(scale)
+                .max(wrapped((first - (scale * written_first + ground)).to_radians()).to_degrees().abs())
         };
         let worst = match offset {
-            AngleOffset::Free if task.is_function() => off(1.0),
+            AngleOffset::Free if task.is_function() => off(scale),
             AngleOffset::Free => off(1.0).min(off(-1.0)),
             AngleOffset::Fixed => off_base(0.0),
             AngleOffset::Ground => off_base(linkage.ground_angle().to_degrees()),

@@ -29,8 +29,8 @@ pub(super) fn nothing(entry: &Entry, key: SortKey) -> f64 {
         SortKey::SumSq => mean_sq * n as f64,
         SortKey::Rms | SortKey::Max | SortKey::ToCurve => mean_sq.sqrt(),
         SortKey::Objective => match entry.measure {
-            Measure::Sum | Measure::WeightedSum => mean_sq * n as f64,
-            Measure::Largest => mean_sq.sqrt(),
+            Measure::Sum | Measure::WeightedSum | Measure::SumInRange => mean_sq * n as f64,
+            Measure::Largest | Measure::LargestInRange => mean_sq.sqrt(),
             Measure::LargestPart => EXACT_MEAN_SQ.sqrt(),
         },
         SortKey::AngleRms | SortKey::AngleMax => EXACT_MEAN_SQ.sqrt().to_degrees(),

@@ -29,7 +29,7 @@ impl Entry {
         error.objective *= match self.measure {
             Measure::Sum | Measure::WeightedSum => factor * factor,
             Measure::Largest => factor,
-            Measure::LargestPart => 1.0,
+            Measure::LargestPart | Measure::SumInRange | Measure::LargestInRange => 1.0,
         };
         for length in [&mut error.rms, &mut error.max] {
             *length *= factor;

@@ -130,8 +130,9 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         c.error.angle.as_ref().map_or(Cell::words(NO_NUMBER), |angle| Cell::degrees(of(angle)))
     };
     let [angle_rms, angle_max] = ["angle rms", "angle largest"];
-    let from = |deg: Option<f64>| {
-        deg.map_or(Cell::words(NO_NUMBER), |deg| Cell::number(deg, minus(&format!("{deg:.2}°"))))
+    let from = |deg: Option<f64>, through: Option<f64>| {
+        let through = through.map_or_else(String::new, |range| format!(" +{range:.2}°"));
+        deg.map_or(Cell::words(NO_NUMBER), |deg| Cell::number(deg, minus(&format!("{deg:.2}°")) + &through))
     };
     let all: [Column<&Candidate>; 16] = [
         ("rms error", true, &|c| Cell::figure(c.error.rms, 4)),
@@ -142,8 +143,8 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         (ranks.as_ref().map_or("sum of squares", |(head, _)| head), true, &|c| {
             Cell::figure(if ranks.is_none() { c.error.sum_sq } else { c.error.objective }, 5)
         }),
-        ("crank from", true, &|c| from(c.input_offset_deg)),
-        ("follower from", true, &|c| from(c.output_offset_deg)),
+        ("crank from", true, &|c| from(c.input_offset_deg, c.input_range_deg)),
+        ("follower from", true, &|c| from(c.output_offset_deg, c.output_range_deg)),
         ("to curve", true, &|c| Cell::figure(c.error.to_curve.rms, 4)),
         ("type", false, &|c| Cell::words(c.linkage_type.name())),
         ("transmission", true, &|c| Cell::degrees(c.transmission_deg.worst)),

@@ -47,21 +47,41 @@ const STEPS: usize = 12;
 /// If infinitely many dyads meet the poses (equal ones among them, equal angles at all of them, turning about one point),
 /// there are none.
 pub fn through_five(poses: &[Pose; 5]) -> Vec<Dyad> {
+    let Some(scale) = Scale::of(poses) else { return Vec::new() };
+    let found = through_rows(&poses.map(|pose| scale.pose(&pose)), None);
+    found.into_iter().map(|dyad| scale.back(dyad)).collect()
+}
+
+/// A line on which the pivot lies: a place of it, and its normal of length 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    pub place: Complex,
+    pub normal: Complex,
+}
+
+impl Line {
+    /// Returns its linear row: <n, q45> - h q0 = 0.
+    fn row(&self) -> [f64; 8] {
+        [-dot(self.normal, self.place), 0.0, 0.0, 0.0, self.normal.re, self.normal.im, 0.0, 0.0]
+    }
+}
+
+/// Returns the real RR dyads through five poses of size one, or through four whose pivot lies on a line.
+pub(super) fn through_rows(poses: &[Pose], line: Option<Line>) -> Vec<Dyad> {
     let mut found: Vec<Dyad> = Vec::new();
-    let Some(scale) = Scale::of(poses) else { return found };
-    let poses = poses.map(|pose| scale.pose(&pose));
-    let Some(directions) = smallest_directions(&poses) else { return found };
+    let rows: Vec<[f64; 8]> = poses.iter().map(row).chain(line.map(|line| line.row())).collect();
+    let Some(directions) = smallest_directions(&rows) else { return found };
     let Some(conics) = conics_of(&directions) else { return found };
     let in_charts = (0..Conics::charts()).flat_map(|chart| conics.in_chart(chart));
     let beside = conics.beside_line(directions.row(0).transpose());
     for point in in_charts.chain(beside).filter_map(|x| conics.common_point(x)) {
         let Some([pin, pivot]) = pin_and_pivot(&directions, &point) else { continue };
-        let Some(dyad) = met_exactly(&poses, pin, pivot) else { continue };
+        let Some(dyad) = met_exactly(poses, line, [pin, pivot]) else { continue };
         if !found.iter().any(|other| is_same(other, &dyad)) {
             found.push(dyad);
         }
     }
-    found.into_iter().map(|dyad| scale.back(dyad)).collect()
+    found
 }
 
 /// Returns up to four RR dyads near to five poses or more: the pins from the three smallest singular directions of the
@@ -75,7 +95,8 @@ pub fn nearest_in_kernel(poses: &[Pose]) -> Vec<Dyad> {
 fn near_dyads(poses: &[Pose]) -> Option<Vec<Dyad>> {
     let scale = Scale::of(poses).filter(|_| poses.len() >= 5)?;
     let scaled = scale.poses(poses);
-    let directions = smallest_directions(&scaled)?;
+    let rows: Vec<[f64; 8]> = scaled.iter().map(row).collect();
+    let directions = smallest_directions(&rows)?;
     let conics = conics_of(&directions)?;
     let points = conics.in_chart(0).into_iter().map(|x| conics.common_point(x).unwrap_or(x));
     let mut found: Vec<Dyad> = Vec::new();
@@ -111,14 +132,14 @@ fn row(pose: &Pose) -> [f64; 8] {
     [0.5 * p.norm_sqr(), 1.0, turned.re, -turned.im, -p.re, -p.im, -q.re, -q.im]
 }
 
-/// Returns the three smallest singular directions of the poses' rows; `None` if there are more than three that vanish.
-fn smallest_directions(poses: &[Pose]) -> Option<Directions> {
+/// Returns the three smallest singular directions of rows; `None` if there are more than three that vanish.
+fn smallest_directions(given: &[[f64; 8]]) -> Option<Directions> {
     let mut rows = Rows::zeros();
-    if poses.len() <= 8 {
-        poses.iter().enumerate().for_each(|(j, pose)| rows.set_row(j, &row(pose).into()));
+    if given.len() <= 8 {
+        given.iter().enumerate().for_each(|(j, row)| rows.set_row(j, &(*row).into()));
     } else {
         // The triangular factor has the singular values and directions of the whole.
-        let all = DMatrix::from_row_iterator(poses.len(), 8, poses.iter().flat_map(row));
+        let all = DMatrix::from_row_iterator(given.len(), 8, given.iter().flatten().copied());
         rows.copy_from(&all.qr().r());
     }
     let svd = rows.try_svd(false, true, f64::EPSILON, 10_000)?;
@@ -163,31 +184,37 @@ fn is_same(one: &Dyad, other: &Dyad) -> bool {
     }
 }
 
-/// Returns the dyad that Newton's iteration reaches from a pin and a pivot, if it meets the poses, of size one.
-fn met_exactly(poses: &[Pose; 5], pin: Complex, pivot: Complex) -> Option<Dyad> {
-    let [pin, pivot] = newton(poses, [pin, pivot]);
-    let distances = poses.map(|pose| (pose.at(pin) - pivot).norm());
-    let length = distances.iter().sum::<f64>() / 5.0;
+/// Returns the dyad that Newton's iteration reaches from a pin and a pivot, if it meets the poses, of size one. The line of the
+/// pivot is linear, and met after one step.
+fn met_exactly(poses: &[Pose], line: Option<Line>, from: [Complex; 2]) -> Option<Dyad> {
+    let [pin, pivot] = newton(poses, line, from);
+    let distances = poses.iter().map(|pose| (pose.at(pin) - pivot).norm());
+    let length = distances.sum::<f64>() / poses.len() as f64;
     let dyad = Dyad::RR { pin, pivot, length };
     let meets = dyad.largest_residual(poses) <= EXACT * (1.0 + length);
     // A pin that rests on the pivot at all poses is a pure turn to the rounding.
     (meets && length < LONGEST && length > EXACT).then_some(dyad)
 }
 
-/// Solves |X_j - G|^2 = |X_0 - G|^2, X_j = P_j + Q_j m, j = 1..4, by Newton's iteration, while the differences fall.
+/// Solves |X_j - G|^2 = |X_0 - G|^2, X_j = P_j + Q_j m, j = 1, 2 .., and the line of the pivot where there is one, four
+/// equations, by Newton's iteration, while the differences fall.
 ///
 /// The difference is <X_j - X_0, X_j + X_0 - 2 G>, which does not cancel for pivots far away.
-fn newton(poses: &[Pose; 5], from: [Complex; 2]) -> [Complex; 2] {
+fn newton(poses: &[Pose], line: Option<Line>, from: [Complex; 2]) -> [Complex; 2] {
     let system = |[pin, pivot]: [Complex; 2]| {
-        let places = poses.map(|pose| pose.at(pin));
+        let place = |j: usize| poses[j].at(pin);
         let (mut slopes, mut value) = (Matrix4::zeros(), Vector4::zeros());
-        for j in 1..5 {
-            let apart = places[j] - places[0];
-            let middle = places[j] + places[0] - pivot * 2.0;
+        for j in 1..poses.len() {
+            let apart = place(j) - place(0);
+            let middle = place(j) + place(0) - pivot * 2.0;
             let (here, first) = (poses[j].direction, poses[0].direction);
             let by_pin = (here - first).conj() * middle + (here + first).conj() * apart;
             slopes.set_row(j - 1, &[by_pin.re, by_pin.im, -2.0 * apart.re, -2.0 * apart.im].into());
             value[j - 1] = dot(apart, middle);
+        }
+        if let Some(Line { place, normal }) = line {
+            slopes.set_row(3, &[0.0, 0.0, normal.re, normal.im].into());
+            value[3] = dot(normal, pivot - place);
         }
         (slopes, value)
     };

@@ -19,6 +19,7 @@
 //! | `curve` | four poses: the circle-point and centre-point curves, by the compatibility linkage |
 //! | `driving` | poses with given crank angles: the driving dyad |
 //! | `kernel` | five poses and more: linear rows, their kernel, and two conics in it |
+//! | `line` | four poses and a line of the pivot; the best pin of a pivot |
 //! | `map` | the map of the body plane: the error of the best circle at each place of a pin |
 //! | `pair` | two dyads as a four-bar |
 //! | `quartic` | the roots of a quartic, by the iteration of Aberth and Ehrlich |
@@ -35,6 +36,7 @@ mod conics;
 mod curve;
 mod driving;
 mod kernel;
+mod line;
 mod map;
 mod pair;
 mod quartic;
@@ -51,6 +53,7 @@ pub use circle::{CircleFit, circle_fit};
 pub use curve::through_four_curve;
 pub use driving::{Driving, driving_dyad};
 pub use kernel::{nearest_in_kernel, through_five, through_random_five};
+pub use line::{best_from_pivot, through_four_on_line};
 pub use map::{CircleMap, circle_minima};
 pub use pair::{Pair, pair};
 pub use slider::{line_over_pivot, pin_on_line};

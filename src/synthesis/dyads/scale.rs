@@ -31,6 +31,11 @@ impl Scale {
         Pose { position: (pose.position - self.centre) / self.size, direction: pose.direction }
     }
 
+    /// Returns a place of the ground in the frame of the scale.
+    pub fn place(&self, place: Complex) -> Complex {
+        (place - self.centre) / self.size
+    }
+
     /// Returns poses in the frame of the scale.
     pub fn poses(&self, poses: &[Pose]) -> Vec<Pose> {
         poses.iter().map(|pose| self.pose(pose)).collect()

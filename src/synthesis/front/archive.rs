@@ -1,7 +1,7 @@
 //! The archive of a front: linkages that none dominates.
 
-use crate::judge::trade_off::{Scales, are_equal, dominates, hypervolume};
-use crate::record::{Axis, Candidate, Figures};
+use crate::judge::trade_off::{Scales, Wishes, are_equal, dominates, hypervolume};
+use crate::record::{Candidate, Figures};
 use crate::synthesis::constants::front::{MOST_KEPT, NEAREST};
 use crate::synthesis::tightened::Tighter;
 use serde::{Deserialize, Serialize};
@@ -18,13 +18,13 @@ pub struct Entry {
 
 /// Linkages that none dominates, in the order in which they came.
 pub(super) struct Archive {
-    axes: Vec<Axis>,
+    wishes: Wishes,
     entries: Vec<(Entry, Figures)>,
 }
 
 impl Archive {
-    pub(super) fn new(axes: &[Axis]) -> Self {
-        Archive { axes: axes.to_vec(), entries: Vec::new() }
+    pub(super) fn new(wishes: Wishes) -> Self {
+        Archive { wishes, entries: Vec::new() }
     }
 
     pub(super) fn members(&self) -> &[(Entry, Figures)] {
@@ -34,13 +34,13 @@ impl Archive {
     /// Takes linkages that none in the archive dominates or equals, and drops those that they dominate.
     pub(super) fn extend(&mut self, entries: impl IntoIterator<Item = (Entry, Figures)>) {
         for (entry, figures) in entries {
-            let axes = &self.axes;
+            let wishes = &self.wishes;
             let beaten =
-                |other: &Figures| dominates(axes, other, &figures) || are_equal(axes, other, &figures);
+                |other: &Figures| dominates(wishes, other, &figures) || are_equal(wishes, other, &figures);
             if self.entries.iter().any(|(_, other)| beaten(other)) {
                 continue;
             }
-            self.entries.retain(|(_, other)| !dominates(axes, &figures, other));
+            self.entries.retain(|(_, other)| !dominates(wishes, &figures, other));
             self.entries.push((entry, figures));
         }
         if self.entries.len() > MOST_KEPT {
@@ -51,7 +51,7 @@ impl Archive {
     /// Keeps those that add most to the volume.
     fn thin(&mut self) {
         let figures: Vec<Figures> = self.entries.iter().map(|(_, figures)| *figures).collect();
-        let mut kept = crate::judge::trade_off::members(&self.axes, &figures, MOST_KEPT / 2);
+        let mut kept = crate::judge::trade_off::members(&self.wishes.axes, &figures, MOST_KEPT / 2);
         kept.sort_unstable();
         let mut place = 0;
         self.entries.retain(|_| {
@@ -63,7 +63,7 @@ impl Archive {
     /// Returns the volume that the linkages dominate, on axes scaled over them.
     pub(super) fn volume(&self) -> f64 {
         let figures: Vec<Figures> = self.entries.iter().map(|(_, figures)| *figures).collect();
-        let scales = Scales::of(&self.axes, &figures);
+        let scales = Scales::of(&self.wishes.axes, &figures);
         let places: Vec<Vec<f64>> = figures.iter().map(|figures| scales.scaled(figures)).collect();
         hypervolume(&places)
     }

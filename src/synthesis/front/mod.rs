@@ -29,7 +29,7 @@ use super::{Context, Progress};
 use crate::judge::assess::assess_again;
 use crate::judge::figures::figures;
 use crate::judge::rank::chosen;
-use crate::judge::trade_off::{knees, members, undominated};
+use crate::judge::trade_off::{Wishes, knees, members, undominated};
 use crate::record::{Axis, Candidate, Evaluations, Figures, Front, LEAST_AXES, MOST_AXES, Member, Reason};
 use crate::task::Problem;
 use crate::task::spec::Objective;
@@ -179,7 +179,7 @@ impl<'a> Search<'a> {
             request,
             limited,
             deviation: deviation.flatten(),
-            archive: Archive::new(&request.axes),
+            archive: Archive::new(Wishes::of(context.problem, &request.axes)),
             tried: Vec::new(),
             pushes,
             generation: 0,
@@ -350,7 +350,7 @@ impl<'a> Search<'a> {
         let axes = &self.request.axes;
         let list: Vec<Figures> = self.archive.members().iter().map(|(_, figures)| *figures).collect();
         debug_assert_eq!(
-            undominated(axes, &list).len(),
+            undominated(&Wishes::of(self.context.problem, axes), &list).len(),
             list.len(),
             "the archive holds undominated linkages"
         );

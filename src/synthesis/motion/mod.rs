@@ -6,10 +6,12 @@
 //! and are read in their order: the number of threads changes nothing but the time. The search ends when enough rounds
 //! have reached the best answer (or the search has gone on for several times as long as it took to reach it) and as many distinct answers as were asked for are known, or no new one has come for
 //! `QUIET_BATCHES` batches; an exact answer needs no second hit. Some rounds start from known answers instead, near them or
-//! with one of their dyads ([`crossing`]); these do not count as hits. Where exact answers form a family ([`super::family`]), several
+//! with one of their dyads ([`crossing`]); these do not count as hits. Pivots that are to lie on lines have dyads of their own
+//! ([`on_lines`]). Where exact answers form a family ([`super::family`]), several
 //! batches are searched and the best answers led to better transmission angles.
 
 mod crossing;
+mod on_lines;
 mod starts;
 
 use super::belief::{Belief, NEARLY, SAME_OPTIMUM};
@@ -131,6 +133,7 @@ impl Motion<'_> {
         let dyads = |draws: &mut Stream| self.starts.dyads(index == 0, draws);
         let mut screened: Vec<(f64, Start)> = Vec::new();
         let starts = match self.kind(index) {
+            Kind::Independent if self.starts.are_on_lines() => self.starts.on_lines(index == 0, &mut draws),
             Kind::Independent => self.starts.pairs(&dyads(&mut draws)),
             Kind::Near => self.near(problem, &mut draws),
             Kind::Crossed => self.starts.crossed(&self.leaders(problem), &mut draws),
@@ -208,7 +211,9 @@ fn on_course(problem: &Problem, fitted: Vec<(f64, Start)>) -> Vec<(f64, Start)> 
     for (merit, start) in fitted {
         if !strayed(problem, &start) {
             kept.push((merit, start));
-        } else if let Some(other) = swapped(problem, &start).filter(|other| !strayed(problem, other)) {
+        } else if let Some(other) = swapped(problem, &start)
+            .filter(|other| problem.spec().require.pivot_on.is_none() && !strayed(problem, other))
+        {
             kept.push((merit, other));
         } else {
             astray.push((merit, start));

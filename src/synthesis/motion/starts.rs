@@ -15,7 +15,7 @@ use crate::synthesis::dyads::{
 use crate::synthesis::family::freedom;
 use crate::task::forms::design_space::Shape;
 use crate::task::forms::rows::{assembly_of, nearest_type};
-use crate::task::forms::start::Start;
+use crate::task::forms::start::{AS_WRITTEN, Start};
 use crate::task::forms::torus::Positions;
 use crate::task::{Problem, Setting};
 
@@ -31,7 +31,7 @@ pub(in crate::synthesis) struct DyadStarts<'a> {
     pub(super) poses: Vec<Pose>,
     pub(super) weights: Vec<f64>,
     /// Whether the exact answers form a family.
-    family: bool,
+    pub(super) family: bool,
 }
 
 impl<'a> DyadStarts<'a> {
@@ -66,25 +66,16 @@ impl<'a> DyadStarts<'a> {
                 None => break,
             }
         }
-        let near = SAME_PIN * self.problem.task().size();
-        let mut distinct: Vec<Dyad> = Vec::with_capacity(dyads.len());
-        for dyad in dyads {
-            let Dyad::RR { pin, pivot, .. } = dyad else { continue };
-            let is_same = |other: &Dyad| match other {
-                Dyad::RR { pin: p, pivot: g, .. } => (p - pin).norm() < near && (g - pivot).norm() < near,
-                Dyad::PR { .. } | Dyad::RP { .. } => false,
-            };
-            if !distinct.iter().any(is_same) {
-                distinct.push(dyad);
-            }
-        }
-        distinct
+        distinct(dyads, self.problem.task().size())
     }
 
     /// Returns whether dyads of known answers are crossed with others: all targets are poses, and more than can be met
     /// exactly.
     pub(super) fn are_crossed(&self) -> bool {
-        !self.family && self.poses.len() == self.problem.task().len() && self.poses.len() > 5
+        !self.family
+            && !self.are_on_lines()
+            && self.poses.len() == self.problem.task().len()
+            && self.poses.len() > 5
     }
 
     /// Draws dyads from the curve of those through four poses; none for another number of poses.
@@ -148,6 +139,10 @@ impl<'a> DyadStarts<'a> {
             side: CouplerSide::of(pair.shape.offset.im),
         };
         let as_it_is = made(self.problem, setting, &pair.shape, pair.frame_angle, positions)?;
+        if self.are_on_lines() {
+            // Crank and follower have lines of their own.
+            return Some(as_it_is);
+        }
         let other = swapped(self.problem, &as_it_is);
         let serves = |start: &Start| is_on_one_branch(self.problem, start);
         match other {
@@ -183,6 +178,23 @@ impl<'a> DyadStarts<'a> {
     }
 }
 
+/// Returns the RR dyads without those that repeat an earlier one, for a target of this size.
+pub(super) fn distinct(dyads: Vec<Dyad>, size: f64) -> Vec<Dyad> {
+    let near = SAME_PIN * size;
+    let mut distinct: Vec<Dyad> = Vec::with_capacity(dyads.len());
+    for dyad in dyads {
+        let Dyad::RR { pin, pivot, .. } = dyad else { continue };
+        let is_same = |other: &Dyad| match other {
+            Dyad::RR { pin: p, pivot: g, .. } => (p - pin).norm() < near && (g - pivot).norm() < near,
+            Dyad::PR { .. } | Dyad::RP { .. } => false,
+        };
+        if !distinct.iter().any(is_same) {
+            distinct.push(dyad);
+        }
+    }
+    distinct
+}
+
 /// Returns the start of a shape with the frame of its body; it aims at the nearest type if types are required.
 fn made(
     problem: &Problem,
@@ -199,7 +211,12 @@ fn made(
         side: CouplerSide::of(shape.offset.im),
         ..setting
     };
-    Some(Start { design: problem.space(setting.side).design(shape, frame), setting, positions })
+    Some(Start {
+        design: problem.space(setting.side).design(shape, frame),
+        setting,
+        positions,
+        scales: AS_WRITTEN,
+    })
 }
 
 /// Returns the start with crank and follower exchanged: the same linkage, driven from its other side.

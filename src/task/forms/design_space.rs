@@ -9,8 +9,9 @@
 
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::four_bar::position::Kernel;
-use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, length, xy};
+use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, length, point, xy};
 use crate::task::Task;
+use crate::task::pivot_on::{Locus, PivotOn};
 use crate::task::spec::{DEFAULT_REACH, DesignSpec, Limits};
 use std::f64::consts::PI;
 
@@ -132,6 +133,8 @@ pub struct ChainRule {
     ground: Option<[f64; 3]>,
     /// The derivatives of (coupler_x, coupler_y) by b, d and e, if d and e are the coordinates.
     coupler: Option<[[f64; 2]; 3]>,
+    /// The directions of the slanted lines along which A and B have their coordinates.
+    along: [Option<Complex>; 2],
 }
 
 impl ChainRule {
@@ -152,6 +155,12 @@ impl ChainRule {
             let [by_b, by_d, by_e] = columns.map(|[x, y]| row[7] * x + row[8] * y);
             (out[5], out[7], out[8]) = (row[5] + by_b, by_d, by_e);
         }
+        for (along, first) in self.along.iter().zip([0, 2]) {
+            if let Some(along) = along {
+                let (x, y) = (out[first], out[first + 1]);
+                (out[first], out[first + 1]) = (x * along.re + y * along.im, y * along.re - x * along.im);
+            }
+        }
         out
     }
 }
@@ -164,18 +173,28 @@ pub struct DesignSpace {
     bounds: [(f64, f64); DESIGN],
     derived: Vec<DerivedBound>,
     free: Vec<usize>,
+    /// The slanted lines on which A and B lie: a place and the direction. Their coordinates are then those along the line and
+    /// across it.
+    slanted: [Option<(Complex, Complex)>; 2],
+    /// Whether each number is fixed by the line of a pivot.
+    held: [bool; DESIGN],
+    /// The lines of pivots that are no coordinates, with the distance within which a pivot is put on its line.
+    loci: [Option<(Locus, f64)>; 2],
 }
 
 const OFFSET: usize = DESIGN - 1;
 
+/// The distance from its line, in parts of the target's size, within which a pivot is put on it.
+const LINE_SLACK: f64 = 1e-7;
+
 impl DesignSpace {
     /// Creates the space of a resolved design table; `offset_free`: whether the crank angle's offset is unknown, or the
-    /// frame of a body; `pivot_box` tightens the pivots' bounds; `side` is t2, used if d and e are the coordinates.
+    /// frame of a body; `pivot_box` tightens the pivots' bounds; a line of `pivot_on` fixes a coordinate; `side` is t2, used if d and e are the coordinates.
     pub fn new(
         spec: &DesignSpec,
         task: &Task,
         offset_free: bool,
-        pivot_box: Option<[f64; 4]>,
+        (pivot_box, pivot_on): (Option<[f64; 4]>, Option<&PivotOn>),
         side: CouplerSide,
     ) -> Self {
         let far = 2.0 * DEFAULT_REACH * task.size();
@@ -193,9 +212,23 @@ impl DesignSpace {
             }
             _ => l,
         };
-        let pivot = |p: Option<[Limits; 2]>| {
+        // A line along an axis fixes a coordinate.
+        let at = |l: Limits, value: Option<f64>| match value {
+            Some(value) if l.0 <= value && value <= l.1 => Limits(value, value),
+            _ => l,
+        };
+        let loci = pivot_on.map_or([None; 2], PivotOn::both);
+        let mut slanted = [None; 2];
+        let mut pivot = |p: Option<[Limits; 2]>, which: usize| {
             let [x, y] = p.unwrap_or([any, any]);
-            [within(x, 0), within(y, 1)]
+            let (x, y) = (within(x, 0), within(y, 1));
+            let Some(locus) = loci[which] else { return [x, y] };
+            if let Some((from, along)) = locus.line().filter(|_| locus.is_slanted()) {
+                slanted[which] = Some((from, along));
+                return [stretch(from, along, [x, y]), Limits(0.0, 0.0)];
+            }
+            let fixed = locus.fixed();
+            [at(x, fixed[0]), at(y, fixed[1])]
         };
         let mut derived = Vec::new();
         let mut derive = |quantity, limits: Option<Limits>| {
@@ -204,12 +237,12 @@ impl DesignSpace {
             }
         };
         let radians = |l: Limits| Limits(l.0.to_radians(), l.1.to_radians());
-        let [a_x, a_y] = pivot(spec.crank_pivot);
+        let [a_x, a_y] = pivot(spec.crank_pivot, 0);
         let (ground, [g_1, g_2]) = match spec.follower_pivot {
             Some(_) => {
                 derive(Derived::Ground, spec.ground);
                 derive(Derived::GroundAngle, spec.ground_angle_deg.map(radians));
-                (GroundChart::Pivot, pivot(spec.follower_pivot))
+                (GroundChart::Pivot, pivot(spec.follower_pivot, 1))
             }
             None => {
                 let angle = spec.ground_angle_deg.map_or(any, radians);
@@ -238,7 +271,24 @@ impl DesignSpace {
         let bounds = [a_x, a_y, g_1, g_2, length(spec.a), length(spec.b), length(spec.c), q_1, q_2, offset]
             .map(|l| (l.0, l.1));
         let free = (0..DESIGN).filter(|&i| bounds[i].0 < bounds[i].1).collect();
-        DesignSpace { ground, coupler, bounds, derived, free }
+        let mut held = [false; DESIGN];
+        for (first, locus) in [0, 2].into_iter().zip(loci) {
+            let Some(locus) = locus.filter(|_| first == 0 || ground == GroundChart::Pivot) else { continue };
+            let fixed = locus.fixed().map(|value| value.is_some());
+            (held[first], held[first + 1]) =
+                if locus.is_slanted() { (false, true) } else { (fixed[0], fixed[1]) };
+        }
+        let mut loci = loci.map(|locus| locus.cloned().map(|locus| (locus, LINE_SLACK * task.size())));
+        loci[0] = None;
+        if ground == GroundChart::Pivot {
+            loci[1] = None;
+        }
+        DesignSpace { ground, coupler, bounds, derived, free, slanted, held, loci }
+    }
+
+    /// Returns whether a number is fixed by the line of a pivot.
+    pub fn is_held(&self, i: usize) -> bool {
+        self.held[i]
     }
 
     /// Returns whether t2 has to be chosen separately (d and e are the coordinates).
@@ -334,9 +384,13 @@ impl DesignSpace {
 
     /// Returns the shape of a design; `None` if d and e form no triangle with b.
     pub fn shape(&self, x: &Design) -> Option<Shape> {
-        let crank_pivot = Complex::new(x[0], x[1]);
+        let pivot = |which: usize, at: Complex| match self.slanted[which] {
+            Some((from, along)) => from + along * at,
+            None => at,
+        };
+        let crank_pivot = pivot(0, Complex::new(x[0], x[1]));
         let follower_pivot = match self.ground {
-            GroundChart::Pivot => Complex::new(x[2], x[3]),
+            GroundChart::Pivot => pivot(1, Complex::new(x[2], x[3])),
             GroundChart::Polar => crank_pivot + Complex::from_polar(x[2], x[3]),
         };
         let offset = match self.coupler {
@@ -382,7 +436,10 @@ impl DesignSpace {
     pub fn coordinates(&self, shape: &Shape, offset: f64) -> Design {
         let ground = shape.follower_pivot - shape.crank_pivot;
         let (g_1, g_2) = match self.ground {
-            GroundChart::Pivot => (shape.follower_pivot.re, shape.follower_pivot.im),
+            GroundChart::Pivot => {
+                let b = self.on_line(1, shape.follower_pivot);
+                (b.re, b.im)
+            }
             GroundChart::Polar => {
                 let (low, high) = self.bounds[3];
                 let middle = if low.is_finite() { 0.5 * (low + high) } else { 0.0 };
@@ -394,8 +451,16 @@ impl DesignSpace {
             CouplerChart::FollowerPin => (0.0, 0.0),
             CouplerChart::Distances(_) => (length(shape.offset), length(shape.offset - shape.coupler)),
         };
-        let a = shape.crank_pivot;
+        let a = self.on_line(0, shape.crank_pivot);
         [a.re, a.im, g_1, g_2, shape.crank, shape.coupler, shape.follower, q_1, q_2, offset]
+    }
+
+    /// Returns a pivot's coordinates along its slanted line and across it; its own without one.
+    fn on_line(&self, which: usize, pivot: Complex) -> Complex {
+        match self.slanted[which] {
+            Some((from, along)) => (pivot - from) * along.conj(),
+            None => pivot,
+        }
     }
 
     /// Returns the chain rule from the shape to the design vector, at a design.
@@ -422,7 +487,8 @@ impl DesignSpace {
                 Some([by_b, column(d / b, 1.0), column(-e / b, 0.0)])
             }
         };
-        ChainRule { ground, coupler }
+        let along = self.slanted.map(|line| line.map(|(_, along)| along));
+        ChainRule { ground, coupler, along }
     }
 
     /// Clamps a linkage's pivots and lengths exactly to their bounds if rounding took them out.
@@ -444,14 +510,39 @@ impl DesignSpace {
             }
         };
         let b = &self.bounds;
-        snap(&mut p.crank_pivot[0], b[0]);
-        snap(&mut p.crank_pivot[1], b[1]);
+        // Of a slanted line only the place across it is fixed: a pivot that has been moved off by rounding goes back.
+        let onto = |pivot: &mut [f64; 2], (from, along): (Complex, Complex)| {
+            let off = (point(*pivot) - from) * along.conj();
+            let rounding = grid.max(1e-9) * (size + 1.0 + off.norm());
+            if off.im != 0.0 && off.im.abs() <= rounding {
+                *pivot = xy(from + along * off.re);
+            }
+        };
+        match self.slanted[0] {
+            Some(line) => onto(&mut p.crank_pivot, line),
+            None => {
+                snap(&mut p.crank_pivot[0], b[0]);
+                snap(&mut p.crank_pivot[1], b[1]);
+            }
+        }
         if self.ground == GroundChart::Pivot {
-            snap(&mut p.follower_pivot[0], b[2]);
-            snap(&mut p.follower_pivot[1], b[3]);
+            match self.slanted[1] {
+                Some(line) => onto(&mut p.follower_pivot, line),
+                None => {
+                    snap(&mut p.follower_pivot[0], b[2]);
+                    snap(&mut p.follower_pivot[1], b[3]);
+                }
+            }
         } else if b[3].0 == b[3].1 && b[3].0 == 0.0 {
             // A horizontal ground is kept horizontal to the last bit.
             p.follower_pivot[1] = p.crank_pivot[1];
+        }
+        for (pivot, locus) in [&mut p.crank_pivot, &mut p.follower_pivot].into_iter().zip(&self.loci) {
+            let Some((locus, slack)) = locus else { continue };
+            let nearest = locus.nearest(point(*pivot));
+            if (nearest - point(*pivot)).norm() <= *slack {
+                *pivot = xy(nearest);
+            }
         }
         snap(&mut p.crank, b[4]);
         snap(&mut p.coupler, b[5]);
@@ -466,6 +557,18 @@ impl DesignSpace {
         }
         FourBar::new(p)
     }
+}
+
+/// Returns the part of a line that a box of limits holds, from a place along a direction of length 1; all between its ends on the
+/// axes if the box holds none of it.
+fn stretch(from: Complex, along: Complex, [x, y]: [Limits; 2]) -> Limits {
+    let part = |Limits(low, high): Limits, from: f64, by: f64| {
+        let ends = [(low - from) / by, (high - from) / by];
+        [ends[0].min(ends[1]), ends[0].max(ends[1])]
+    };
+    let ([x0, x1], [y0, y1]) = (part(x, from.re, along.re), part(y, from.im, along.im));
+    let (low, high) = (x0.max(y0), x1.min(y1));
+    if low <= high { Limits(low, high) } else { Limits(x0.min(y0), x1.max(y1)) }
 }
 
 /// Returns the pivots of a shape as coordinate pairs.

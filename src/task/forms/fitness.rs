@@ -68,7 +68,7 @@ pub struct Reading {
 
 impl Reading {
     /// Takes a reading if it is better.
-    fn offer(&mut self, reading: Reading) {
+    pub(super) fn offer(&mut self, reading: Reading) {
         if reading.fitness.compare(&self.fitness).is_lt() {
             *self = reading;
         }
@@ -76,7 +76,7 @@ impl Reading {
 }
 
 /// Returns the reading of a design that cannot be evaluated.
-fn nothing() -> Reading {
+pub(super) fn nothing() -> Reading {
     let setting =
         Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: CouplerSide::Plus };
     Reading { fitness: Fitness { violation: f64::INFINITY, cost: f64::NAN }, setting, arc: 0.0 }
@@ -485,7 +485,7 @@ impl Sampled {
 
 /// The course of the crank angle through the points: its steps in either direction.
 #[derive(Default)]
-struct Course {
+pub(super) struct Course {
     first: Option<f64>,
     last: Option<f64>,
     /// The sum of the steps taken counter-clockwise all the way, and clockwise all the way.
@@ -499,7 +499,7 @@ struct Course {
 }
 
 impl Course {
-    fn pass(&mut self, angle: f64) {
+    pub(super) fn pass(&mut self, angle: f64) {
         if let Some(last) = self.last {
             let step = (angle - last).rem_euclid(TAU);
             self.forward += step;
@@ -516,7 +516,12 @@ impl Course {
 
     /// Returns the direction among those allowed, the disorder of the points (in turns; 0: in order), and the motion. A
     /// crank that turns goes round less than once; one that rocks does not turn back.
-    fn judged(&self, turns: bool, allowed: &[f64], assembly: AssemblyMode) -> (f64, f64, Motion<'static>) {
+    pub(super) fn judged(
+        &self,
+        turns: bool,
+        allowed: &[f64],
+        assembly: AssemblyMode,
+    ) -> (f64, f64, Motion<'static>) {
         let start = self.first.unwrap_or(0.0);
         let best = |length: &dyn Fn(f64) -> f64| {
             let lengths = allowed.iter().map(|&d| (d, length(d)));

@@ -1,15 +1,16 @@
 //! The least-squares fit that suits a start: of a path, of a motion or of a function, with prescribed or
-//! (but for functions) with free timing.
+//! (but for functions) with free timing, and of a function with free ranges.
 //!
-//! The five differ in their numbers of unknowns and of rows, which are types. So what is to be done with a fit is a
+//! The six differ in their numbers of unknowns and of rows, which are types. So what is to be done with a fit is a
 //! [`FitUser`], and [`on_fit`] is the one place that tells them apart.
 
 use super::design_space::{DESIGN, Design};
-use super::start::Start;
-use super::timed::{FunctionFit, TimedMotionFit, TimedPathFit};
+use super::start::{AS_WRITTEN, Start};
+use super::timed::{FunctionFit, RangedFit, TimedMotionFit, TimedPathFit, WITH_FRAME};
 use super::torus::{MotionFit, PathFit, Positions};
 use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::task::Problem;
+use crate::task::ranges::Scales;
 
 /// A computation on a fit of any kind.
 pub trait FitUser {
@@ -32,21 +33,34 @@ pub fn own_frame<const N: usize>(x: &[f64; N]) -> Option<f64> {
     x.get(DESIGN).copied()
 }
 
+/// Returns the scales of a function's inputs and outputs among the unknowns of a fit; 1 in fits without free ranges.
+pub fn own_scales<const N: usize>(x: &[f64; N]) -> Scales {
+    match x.get(WITH_FRAME..) {
+        Some([input, output]) => [*input, *output],
+        _ => AS_WRITTEN,
+    }
+}
+
 /// Calls `user` with the fit of a problem at a start; `None` if the start has no positions and the timing is free.
 /// `ordered`: whether positions are held in their present order around the curve, if the problem requires an order.
 pub fn on_fit<U: FitUser>(problem: &Problem, start: &Start, ordered: bool, user: U) -> Option<U::Output> {
-    let Start { design, setting, positions } = start;
+    let Start { design, setting, positions, scales } = start;
     let is_timed = positions.is_empty() || problem.task().is_partly_timed();
     match (is_timed, problem.task().body()) {
         (true, None) => Some(user.on(&TimedPathFit::new(problem, *setting)?, *design)),
+        (true, Some(body)) if problem.is_function() && !body.ranges().are_written() => {
+            let fit = RangedFit::new(problem, *setting)?;
+            let x = fit.unknowns(design, *scales);
+            Some(user.on(&fit, x))
+        }
         (true, Some(_)) if problem.is_function() => {
             let fit = FunctionFit::new(problem, *setting)?;
-            let x = fit.unknowns(design);
+            let x = fit.unknowns(design, *scales);
             Some(user.on(&fit, x))
         }
         (true, Some(_)) => {
             let fit = TimedMotionFit::new(problem, *setting)?;
-            let x = fit.unknowns(design);
+            let x = fit.unknowns(design, *scales);
             Some(user.on(&fit, x))
         }
         (false, None) => {

@@ -14,6 +14,7 @@
 //! | [`timed`] | prescribed timing as a least-squares problem in the design vector |
 //! | [`torus`] | free timing as a least-squares problem: the design vector and, for each point, a position of the linkage of its own |
 
+pub mod body_fitness;
 pub mod design_space;
 pub mod fitness;
 pub mod fits;

@@ -17,6 +17,7 @@ mod linkage_type;
 mod longest_max;
 mod order;
 mod pins_in;
+mod pivot_on;
 mod pivots_in;
 mod tolerance;
 mod tolerance_deg;
@@ -25,12 +26,14 @@ mod transmission;
 pub use limit::{Limit, LimitUnit};
 pub use link_ratio::DEFAULT_LINK_RATIO;
 pub use longest_max::DEFAULT_LONGEST;
+pub(crate) use pivot_on::RawPivotOn;
 pub use transmission::TransmissionOver;
 
 use crate::mechanism::LinkageType;
+use crate::task::pivot_on::{Locus, PivotOn};
 use crate::task::region::Region;
 use crate::task::spec::{ClosingPolicy, DirectionPolicy, OnePolicy, OrderPolicy, ProblemSpec, TimingSpec};
-use crate::task::values::{Corners, LengthOrAny, Number, OneOrMore, RegionNumbers};
+use crate::task::values::{Corners, LengthOrAny, Number, OneOrMore, OnlyTable, RegionNumbers, XY};
 use crate::task::{Defect, Problem};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -47,6 +50,8 @@ pub enum RequirementKind {
     LinkRatio,
     /// The key `require.pivots_in`.
     PivotsIn,
+    /// The key `require.pivot_on`.
+    PivotOn,
     /// The key `require.pins_in`.
     PinsIn,
     /// The key `require.footprint_in`.
@@ -73,9 +78,10 @@ pub enum RequirementKind {
 
 impl RequirementKind {
     /// Every kind, in the order in which conflicts name them and relaxations try them.
-    pub const IN_CONFLICTS: [RequirementKind; 15] = [
+    pub const IN_CONFLICTS: [RequirementKind; 16] = [
         Self::Transmission,
         Self::PivotsIn,
+        Self::PivotOn,
         Self::PinsIn,
         Self::FootprintIn,
         Self::ExtentMax,
@@ -104,6 +110,11 @@ impl RequirementKind {
         Self::TOLERANCES.iter().any(|kind| kind.name() == name)
     }
 
+    /// Returns whether a requirement of this name in a record puts pivots on lines, which fixes them there.
+    pub fn names_line(name: &str) -> bool {
+        name == Self::PivotOn.name()
+    }
+
     /// Returns its key in the file of a problem: a tolerance is one of its task's table.
     pub fn key_in(self, spec: &ProblemSpec) -> String {
         match self {
@@ -113,7 +124,7 @@ impl RequirementKind {
     }
 
     /// Returns every kind, in the order of a record.
-    pub fn all() -> [RequirementKind; 15] {
+    pub fn all() -> [RequirementKind; 16] {
         let mut kinds = Self::IN_CONFLICTS;
         kinds.sort_unstable();
         kinds
@@ -126,6 +137,7 @@ impl RequirementKind {
             Self::Transmission => &transmission::TRANSMISSION,
             Self::LinkRatio => &link_ratio::LINK_RATIO,
             Self::PivotsIn => &pivots_in::PIVOTS_IN,
+            Self::PivotOn => &pivot_on::PIVOT_ON,
             Self::PinsIn => &pins_in::PINS_IN,
             Self::FootprintIn => &footprint_in::FOOTPRINT_IN,
             Self::ExtentMax => &extent_max::EXTENT_MAX,
@@ -277,6 +289,9 @@ pub(crate) struct RawRequire {
     pub link_ratio_max: Option<Number>,
     /// The box [xmin, ymin, xmax, ymax] or the polygon [[x, y], ...] that must hold both fixed pivots.
     pub pivots_in: Option<RegionNumbers>,
+    /// Lines on which the fixed pivots must lie, each through two points and without ends: { A = [[x, y], [x, y]], B = .. };
+    /// with one point, [[x, y]], the pivot lies there. Not of a function, whose pivots `[design]` gives.
+    pub pivot_on: Option<OnlyTable<RawPivotOn>>,
     /// The box or the polygon, in the body's frame, that must hold both moving pins C and D; of a motion.
     pub pins_in: Option<RegionNumbers>,
     /// The box [xmin, ymin, xmax, ymax] that must hold every joint and P over the motion used.
@@ -320,6 +335,9 @@ pub struct RequireSpec {
     /// [xmin, ymin, xmax, ymax] or a polygon [[x, y], ...] that holds both fixed pivots.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pivots_in: Option<Region>,
+    /// The lines or points on which the fixed pivots lie.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pivot_on: Option<PivotOn>,
     /// [xmin, ymin, xmax, ymax] or a polygon [[x, y], ...], in the body's frame, that holds both moving pins.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pins_in: Option<Region>,
@@ -364,6 +382,13 @@ impl Default for RequireSpec {
     }
 }
 
+impl From<RawPivotOn> for PivotOn {
+    fn from(raw: RawPivotOn) -> PivotOn {
+        let locus = |points: Vec<XY>| Locus(points.into_iter().map(|place| place.0).collect());
+        PivotOn { crank_pivot: raw.crank_pivot.map(locus), follower_pivot: raw.follower_pivot.map(locus) }
+    }
+}
+
 impl From<RawRequire> for RequireSpec {
     fn from(raw: RawRequire) -> RequireSpec {
         let number = |given: Option<Number>| given.map(|number| number.0);
@@ -377,6 +402,7 @@ impl From<RawRequire> for RequireSpec {
             transmission_over: raw.transmission_over,
             link_ratio_max: number(raw.link_ratio_max).unwrap_or(DEFAULT_LINK_RATIO),
             pivots_in: raw.pivots_in.map(|region| region.0),
+            pivot_on: raw.pivot_on.map(|OnlyTable(raw)| raw.into()),
             pins_in: raw.pins_in.map(|region| region.0),
             footprint_in: corners(raw.footprint_in),
             extent_max: number(raw.extent_max),

@@ -5,6 +5,7 @@
 //! - link ratio R: l_i - l_j / R >= 0 for all pairs;
 //! - transmission angle: size (cos mu_min - cos mu) >= 0 and size (cos mu + cos mu_min) >= 0 at the extremes of
 //!   the diagonal |CB|, cos mu = (b^2 + c^2 - s^2)/(2 b c);
+//! - pivots on lines: the margin less the distance to either side of the line;
 //! - pins: the distance of C and D from the boundary of their region, in the frame of the body;
 //! - boxes: the distance to each side of the extreme joint, whose derivative is that of the joint at its
 //!   extreme position (Danskin 1967);
@@ -23,6 +24,7 @@ mod link_ratio;
 mod linkage_type;
 mod longest_max;
 mod pins_in;
+mod pivot_on;
 mod pivots_in;
 mod swept;
 mod transmission;
@@ -206,6 +208,7 @@ impl Requirements {
         link_ratio::rows(&at, each);
         derived::rows(&at, &self.derived, each);
         pivots_in::rows(&at, each);
+        pivot_on::rows(&at, each);
         if let Some(frame) = frame {
             pins_in::rows(&at, frame, each);
         }

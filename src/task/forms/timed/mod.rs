@@ -10,15 +10,15 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `output` | the errors of the follower's angle in a function |
+//! | `output` | the errors of the follower's angle in a function, with its free ranges |
 //! | `own` | the crank angles of targets that have their own |
 
 mod output;
 mod own;
 
 use super::design_space::{ChainRule, DESIGN, Design, DesignSpace, SHAPE, Shape};
-use super::fits::{design_of, own_frame};
-use super::rows::{Motion, Requirements};
+use super::fits::{design_of, own_frame, own_scales};
+use super::rows::{Motion, Place, Requirements, Row};
 use super::torus::{ANGLE_ROW, Positions, angle_residual};
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::gradient::{Frame, coupler_gradient, ground_gradient, shape_gradient};
@@ -26,6 +26,7 @@ use crate::mechanism::{Complex, point, xy};
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
 };
+use crate::task::ranges::Scales;
 use crate::task::{AngleOffset, Body, Problem, Setting, Timing, best_frame};
 use std::f64::consts::TAU;
 
@@ -37,6 +38,9 @@ fn by_ground(shape: &Shape) -> [f64; 4] {
 /// The number of unknowns of a motion: the design and the frame of the body.
 pub const WITH_FRAME: usize = DESIGN + 1;
 
+/// The number of unknowns of a function with free ranges: the design, the frame and the scales of inputs and outputs.
+pub const WITH_SCALES: usize = WITH_FRAME + 2;
+
 /// Least squares over the design vector for prescribed timing, with N unknowns and R rows a target: [`DESIGN`] and 2 of a
 /// path, [`WITH_FRAME`] and 3 of a motion.
 #[derive(Clone, Debug)]
@@ -44,7 +48,7 @@ pub struct TimedFit<'a, const N: usize, const R: usize> {
     problem: &'a Problem,
     setting: Setting,
     space: DesignSpace,
-    /// Those of the design, and of the frame none.
+    /// Those of the design and the scales, and of the frame none.
     bounds: [(f64, f64); N],
     requirements: Requirements,
     /// The angles direction psi_j, in radians.
@@ -60,6 +64,8 @@ pub type TimedPathFit<'a> = TimedFit<'a, DESIGN, 2>;
 pub type TimedMotionFit<'a> = TimedFit<'a, WITH_FRAME, 3>;
 /// The fit of a function.
 pub type FunctionFit<'a> = TimedFit<'a, WITH_FRAME, 2>;
+/// The fit of a function with free ranges.
+pub type RangedFit<'a> = TimedFit<'a, WITH_SCALES, 2>;
 
 impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
     /// Creates the fit of a problem in a setting; `None` for free timing.
@@ -73,6 +79,9 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
             && problem.task().body().and_then(|body| body.given_frame(0.0)).is_some()
         {
             *frame = (0.0, 0.0);
+        }
+        for (bounds, scale) in bounds.iter_mut().skip(WITH_FRAME).zip(problem.task().ranges().bounds()) {
+            *bounds = scale;
         }
         let run = problem.run(setting.direction);
         Some(TimedFit {
@@ -97,31 +106,35 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
         &self.requirements
     }
 
-    /// Returns the unknowns at a design; the frame of a body is that of the least errors, 0 if the loop is open at a target or
+    /// Returns the unknowns at a design and scales of a function's ranges; the frame of a body is that of the least errors, 0 if the loop is open at a target or
     /// the frame is no unknown.
-    pub fn unknowns(&self, design: &Design) -> [f64; N] {
+    pub fn unknowns(&self, design: &Design, scales: Scales) -> [f64; N] {
         let mut x = [0.0; N];
         x[..DESIGN].copy_from_slice(design);
         if let Some(frame) = x.get_mut(DESIGN) {
-            *frame = self.frame_of(design).unwrap_or(0.0);
+            *frame = self.frame_of(design, scales).unwrap_or(0.0);
+        }
+        for (place, scale) in x.iter_mut().skip(WITH_FRAME).zip(self.problem.task().ranges().nearest(scales))
+        {
+            *place = scale;
         }
         x
     }
 
     /// Returns the frame of the body for which the weighted sum of squared angle errors is least.
-    fn frame_of(&self, design: &Design) -> Option<f64> {
+    fn frame_of(&self, design: &Design, scales: Scales) -> Option<f64> {
         let body = self.problem.task().body().filter(|body| body.given_frame(0.0).is_none())?;
         let sign = self.sign();
         let shape = self.space.shape(design)?;
         let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(design, &shape));
-        let apart = |(phase, angle): (&Complex, &Option<f64>)| {
-            let crank = phase * turn;
+        let apart = |(j, angle): (usize, &Option<f64>)| {
+            let crank = self.phase(j, scales[0]) * turn;
             let at = kernel.at(crank.re, crank.im);
             let joints = [shape.follower_pivot, point(at.crank_pin), point(at.follower_pin)];
-            Some(sign * (*angle)? - body.line(joints).arg())
+            Some(sign * scales[1] * (*angle)? - body.line(joints).arg())
         };
-        let apart: Vec<Option<f64>> = self.phases.iter().zip(&body.angles).map(apart).collect();
+        let apart: Vec<Option<f64>> = body.angles.iter().enumerate().map(apart).collect();
         Some(best_frame(&apart, self.problem.task().weights())).filter(|frame| frame.is_finite())
     }
 
@@ -134,17 +147,28 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
         }
     }
 
+    /// Returns e^{i direction h psi_j} at a scale h of the inputs.
+    fn phase(&self, j: usize, scale: f64) -> Complex {
+        if N > WITH_FRAME { Complex::from_polar(1.0, scale * self.angles[j]) } else { self.phases[j] }
+    }
+
     /// Returns the crank angles at the points, in radians.
     pub fn crank_angles(&self, x: &Design, shape: &Shape) -> Vec<f64> {
         let offset = self.offset(x, shape);
         self.angles.iter().map(|angle| angle + offset).collect()
     }
 
-    /// Returns the motion between the least and the greatest crank angle; the full turn for a closed target.
-    pub fn motion(&self, x: &Design, shape: &Shape) -> Motion<'static> {
+    /// Returns the least and the greatest of the angles direction psi_j.
+    fn span(&self) -> [f64; 2] {
+        let angles = || self.angles.iter().copied();
+        [angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    /// Returns the motion between the least and the greatest crank angle, at a scale of the inputs; the full turn for a closed
+    /// target.
+    pub fn motion(&self, x: &Design, shape: &Shape, scale: f64) -> Motion<'static> {
         let offset = self.offset(x, shape);
-        let low = self.angles.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = self.angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let [low, high] = self.span().map(|angle| scale * angle);
         let high = if self.problem.task().closed() { high.max(low + TAU) } else { high };
         Motion::Stretch(low + offset, high + offset, self.setting.assembly)
     }
@@ -168,6 +192,17 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
         let mut out = [0.0; N];
         out[..DESIGN].copy_from_slice(&rule.by_design(&row, by_offset));
         out
+    }
+
+    /// Returns the derivative of a row of a requirement by the scale of the inputs.
+    fn by_scale(&self, row: &Row) -> f64 {
+        let [low, high] = self.span();
+        let at = |place: Place| match place {
+            Place::First => low,
+            Place::Last => high,
+            Place::Anywhere | Place::Position(_) => 0.0,
+        };
+        row.turns.iter().map(|turn| turn.by * at(turn.place)).sum()
     }
 
     /// Returns the body of a motion.
@@ -303,13 +338,16 @@ impl<const N: usize, const R: usize> BlockLeastSquares<N, R> for TimedFit<'_, N,
         self.requirements.rows(
             self.setting.aim,
             &shape,
-            &self.motion_of(x, &shape, state),
+            &self.motion_of(x, &shape, own_scales(unknowns)[0], state),
             frame,
             &mut |row| {
                 each(row.value, &|| {
                     let mut gradient = self.by_design(&rule, row.shape, row.by_turn(), by_ground);
                     if let Some(by_frame) = gradient.get_mut(DESIGN) {
                         *by_frame = row.by_frame;
+                    }
+                    if let Some(by_scale) = gradient.get_mut(WITH_FRAME) {
+                        *by_scale = self.by_scale(row);
                     }
                     ConstraintRow { value: row.value, gradient, own: [None; MOST_OWN] }
                 });

@@ -25,8 +25,15 @@ fn position_at(kernel: &Kernel, crank: Complex) -> [Complex; 2] {
 
 impl<const N: usize, const R: usize> TimedFit<'_, N, R> {
     /// As [`TimedFit::motion`], with the crank angles of the targets that have their own.
-    pub(super) fn motion_of(&self, x: &Design, shape: &Shape, state: &Positions) -> Motion<'static> {
-        let timed = self.motion(x, shape);
+    pub(super) fn motion_of(
+        &self,
+        x: &Design,
+        shape: &Shape,
+        scale: f64,
+        state: &Positions,
+    ) -> Motion<'static> {
+        let timed = self.motion(x, shape, scale);
+
         let Motion::Stretch(mut low, mut high, assembly) = timed else { return timed };
         for (j, guess) in self.crank_angles(x, shape).into_iter().enumerate() {
             if let Some(crank) = self.own_crank(j, state) {
