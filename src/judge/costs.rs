@@ -20,7 +20,7 @@ use crate::numbers::optimise::nonnegative::nonnegative_least_squares;
 use crate::record::{Candidate, Cost, LimitUnit};
 use crate::task::Problem;
 use crate::task::forms::design_space::{DESIGN, Derived, DesignSpace, Shape};
-use crate::task::forms::fits::{FitUser, on_fit, own_frame};
+use crate::task::forms::fits::{FitUser, Kept, on_fit, own_frame};
 use crate::task::forms::rows::{Motion, RowKind, Side};
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedPathFit;
@@ -88,7 +88,7 @@ pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
     } else {
         PathFit::new(problem, setting).motion(&shape, positions)
     };
-    on_fit(problem, &start, false, Pricing { at: &at, motion: &motion }).unwrap_or_default()
+    on_fit(problem, &start, Kept::Nothing, Pricing { at: &at, motion: &motion }).unwrap_or_default()
 }
 
 /// Computes the costs of the active limits at a candidate over a motion.

@@ -14,7 +14,7 @@ use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, PointBloc
 use crate::record::{Candidate, Family};
 use crate::task::Problem;
 use crate::task::forms::design_space::{DESIGN, Derived, Design, DesignSpace, SHAPE, Shape};
-use crate::task::forms::fits::{FitUser, on_fit, own_frame};
+use crate::task::forms::fits::{FitUser, Kept, on_fit, own_frame};
 use crate::task::forms::torus::Positions;
 use nalgebra::{DMatrix, SMatrix};
 use std::array::from_fn;
@@ -37,7 +37,7 @@ pub fn family(problem: &Problem, best: &Candidate) -> Option<Family> {
 /// Returns the number of free unknowns less the rank of the points' derivatives by them; `None` if these do not exist.
 pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     let start = start_at(problem, candidate)?;
-    let mut rows = on_fit(problem, &start, false, Derivatives { positions: &start.positions })??;
+    let mut rows = on_fit(problem, &start, Kept::Nothing, Derivatives { positions: &start.positions })??;
     let space = problem.space(start.setting.side);
     let shape = space.shape(&start.design)?;
     for bound in space.derived().iter().filter(|bound| bound.limits.is_fixed()) {

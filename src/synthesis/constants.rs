@@ -13,12 +13,19 @@ pub struct Effort {
     pub rounds: usize,
     /// The relative reduction of the cost at which it counts as converged.
     pub relative_reduction: f64,
+    /// Whether the points of a motion are held on the branch on which they all start.
+    pub on_branch: bool,
 }
 
 impl Effort {
     /// Creates the effort of a fit that goes on to the last digits.
     pub const fn of(steps: usize, rounds: usize) -> Self {
-        Effort { steps, rounds, relative_reduction: 1e-12 }
+        Effort { steps, rounds, relative_reduction: 1e-12, on_branch: false }
+    }
+
+    /// Returns the effort of a fit that holds the points of a motion on the branch on which they all start.
+    pub const fn on_branch(self) -> Self {
+        Effort { on_branch: true, ..self }
     }
 }
 
@@ -110,8 +117,8 @@ pub mod motion {
     /// Ends beyond these fitted to convergence whose points have strayed, if they are better.
     pub const ASTRAY: usize = 1;
     /// Rounds that have to reach the best answer, or to come near it.
-    pub const HITS: usize = 5;
-    pub const NEAR_HITS: usize = 10;
+    pub const HITS: usize = 6;
+    pub const NEAR_HITS: usize = 12;
     /// A search ends that has gone on for so many independent rounds, and so many times as long as it took to come within
     /// a thousandth of its best answer.
     pub const QUIET_ROUNDS: u64 = 40;
@@ -134,6 +141,8 @@ pub mod motion {
     /// Least number of batches, and batches without a new answer that end a search for further distinct answers.
     pub const LEAST_BATCHES: u64 = 3;
     pub const QUIET_BATCHES: u64 = 8;
+    /// The weight of a pose that has to be met exactly, in parts of its own.
+    pub const EXACT_WEIGHT: f64 = 3e4;
     /// Number of candidates kept while searching.
     pub const KEPT: usize = 200;
     /// Families of exact answers: dyads of a round, and batches.
@@ -264,9 +273,10 @@ pub mod free {
     pub const WORTH_FINISHING: f64 = 4.0;
     pub const DENSE_WORTH_FINISHING: f64 = 2.0;
     /// The efforts of short fits and of longer ones; ends are finished by [`super::multistart::LONG_FIT`].
-    pub const SHORT_FIT: Effort = Effort { steps: 16, rounds: 2, relative_reduction: 1e-4 };
+    pub const SHORT_FIT: Effort = Effort { steps: 16, rounds: 2, relative_reduction: 1e-4, on_branch: false };
     /// The effort of fits further to an end on the explored points.
-    pub const MIDDLE_FIT: Effort = Effort { steps: 100, rounds: 6, relative_reduction: 1e-6 };
+    pub const MIDDLE_FIT: Effort =
+        Effort { steps: 100, rounds: 6, relative_reduction: 1e-6, on_branch: false };
     /// Range of random steps away from a known end, in parts of a length or of the target's size.
     pub const JITTER: (f64, f64) = (0.01, 0.5);
     /// Range of the factor of the difference that is added.
@@ -434,9 +444,9 @@ pub mod front {
     pub const GAPS: usize = 4;
     pub const LEAST_GAP: f64 = 0.08;
     /// The effort of fits before the last ones.
-    pub const EFFORT: Effort = Effort { steps: 40, rounds: 5, relative_reduction: 1e-4 };
+    pub const EFFORT: Effort = Effort { steps: 40, rounds: 5, relative_reduction: 1e-4, on_branch: false };
     /// The effort of the last fits of the members.
-    pub const LAST: Effort = Effort { steps: 120, rounds: 8, relative_reduction: 1e-9 };
+    pub const LAST: Effort = Effort { steps: 120, rounds: 8, relative_reduction: 1e-9, on_branch: false };
     /// Starts of a fit.
     pub const NEAREST: usize = 2;
     /// First steps of a push: in degrees, and of the logarithm of other figures; a push ends at this part of its first

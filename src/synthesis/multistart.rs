@@ -21,7 +21,7 @@ use crate::numbers::arithmetic::streams::stream;
 use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, solve};
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Evaluations};
 use crate::task::forms::design_space::Design;
-use crate::task::forms::fits::{FitUser, design_of, on_fit, own_scales};
+use crate::task::forms::fits::{FitUser, Kept, design_of, on_fit, own_scales};
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedPathFit;
@@ -183,7 +183,7 @@ pub(super) fn fit_and_judge<S: Send>(
 
 /// Returns the promise of a start, by which starts are screened: the cost plus the squared violation of the
 /// requirements, in the units of the cost; `None` if it has no cost.
-pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
+pub fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     let task = problem.task();
     let weight: f64 = task.weights().iter().sum();
     let scale = weight * task.error_size().powi(2);
@@ -192,7 +192,7 @@ pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     if settles && !PathFit::new(problem, start.setting).settle(&start.design, held) {
         return None;
     }
-    let (cost, lack) = on_fit(problem, start, false, Screening { positions: &start.positions })??;
+    let (cost, lack) = on_fit(problem, start, Kept::Nothing, Screening { positions: &start.positions })??;
     let lack = lack / task.size();
     Some(cost + scale * lack * lack)
 }
@@ -234,7 +234,7 @@ impl Fitted {
 
 /// Fits from a start under all requirements, with at most `evaluations` of the cost (at least one).
 pub fn polish(context: Context<'_>, start: Start, effort: Effort, evaluations: u64) -> Fitted {
-    fit_with(context, start, &options(context.problem, effort, evaluations))
+    fit_with(context, start, effort, &options(context.problem, effort, evaluations))
 }
 
 /// As [`polish`] from a start whose error may be large; ends as soon as all requirements are met and the cost is at most
@@ -248,11 +248,12 @@ pub(super) fn polish_until(
 ) -> Fitted {
     let usual = options(context.problem, effort, evaluations);
     let exact_cost = usual.exact_cost.max(enough);
-    fit_with(context, start, &LmOptions { exact_cost, hopeless_cost: f64::INFINITY, ..usual })
+    fit_with(context, start, effort, &LmOptions { exact_cost, hopeless_cost: f64::INFINITY, ..usual })
 }
 
-fn fit_with(context: Context<'_>, start: Start, options: &LmOptions) -> Fitted {
-    on_fit(context.problem, &start, true, Fitting { context, start: &start, options }).unwrap_or(Fitted::NONE)
+fn fit_with(context: Context<'_>, start: Start, effort: Effort, options: &LmOptions) -> Fitted {
+    let kept = if effort.on_branch { Kept::OrderAndBranch } else { Kept::Order };
+    on_fit(context.problem, &start, kept, Fitting { context, start: &start, options }).unwrap_or(Fitted::NONE)
 }
 
 /// Fits from a start by Levenberg-Marquardt.

@@ -18,7 +18,7 @@ use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, Goal, solve
 use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::record::{Candidate, Evaluations, Figure};
 use crate::task::Problem;
-use crate::task::forms::fits::{FitUser, design_of, on_fit, own_scales};
+use crate::task::forms::fits::{FitUser, Kept, design_of, on_fit, own_scales};
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::{PathFit, Positions};
 use crate::task::requirement::RequirementKind;
@@ -137,7 +137,8 @@ fn convex(
         return NONE;
     }
     let polishing = Polishing { context, start: &start, goal, good_enough, evaluations };
-    on_fit(problem, &start, false, polishing).unwrap_or(NONE)
+    let kept = if problem.task().body().is_some() { Kept::OrderAndBranch } else { Kept::Nothing };
+    on_fit(problem, &start, kept, polishing).unwrap_or(NONE)
 }
 
 /// Fits from a start by sequential convex programming.

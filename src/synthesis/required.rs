@@ -3,9 +3,12 @@
 //! A joint fit does not fix the linkage type unless the problem does. By way of a change point positions then come to
 //! lie on two circuits, or on both branches of a rocking motion, and such an end may well have the least error of all.
 //! The requirements are best met near it by a linkage that cannot stray: with one circuit if branches are free, with an
-//! input that turns fully if one branch is required.
+//! input that turns fully if one branch is required. The fit of a motion can also hold its points on the branch from which
+//! they start, be the crank the one dyad or the other: the best acceptable linkage is often at a toggle of one of its poses
+//! or at a change point.
 
 use super::constants::free::{LED_BACK_MOST, SHORT_FIT, WORTH_LEADING_BACK};
+use super::motion::swapped;
 use super::multistart::{Effort, Spender, by_merit};
 use crate::mechanism::four_bar::mobility::linkage_type;
 use crate::mechanism::{AssemblyMode, Branch, LinkageType};
@@ -67,7 +70,7 @@ impl Spender<'_> {
             let mut tried: Vec<(f64, Start)> = Vec::with_capacity(back.len());
             for start in back {
                 let most = worth_spending(problem, &start);
-                tried.extend(self.fit(problem, start, SHORT_FIT, most));
+                tried.extend(self.fit(problem, start, SHORT_FIT.on_branch(), most));
             }
             tried.retain(|(again, _)| *again <= WORTH_LEADING_BACK * merit);
             by_merit(&mut tried, usize::MAX);
@@ -75,7 +78,8 @@ impl Spender<'_> {
         }
         for start in back {
             let most = worth_spending(problem, &start);
-            let again = self.fit(problem, start, effort, most).filter(|(_, end)| !strayed(problem, end));
+            let again =
+                self.fit(problem, start, effort.on_branch(), most).filter(|(_, end)| !strayed(problem, end));
             if again.is_some() {
                 return again;
             }
@@ -85,8 +89,8 @@ impl Spender<'_> {
     }
 }
 
-/// Returns starts near a strayed one that aim at types whose points cannot stray; empty if the problem allows no such
-/// type.
+/// Returns starts near a strayed one that aim at types whose points cannot stray, and of a motion those on one branch,
+/// driven from either side, which a fit can hold there; empty if the problem allows no such type.
 pub(super) fn led_back(problem: &Problem, end: &Start) -> Vec<Start> {
     let types = problem.types();
     let allowed = |kind: &LinkageType| match end.setting.aim {
@@ -99,7 +103,14 @@ pub(super) fn led_back(problem: &Problem, end: &Start) -> Vec<Start> {
         return kind.map(|kind| aimed_at(end, kind)).into_iter().collect();
     }
     let Some(start) = on_one_branch(problem, end) else { return Vec::new() };
-    ONE_BRANCH.into_iter().filter(allowed).map(|kind| aimed_at(&start, kind)).collect()
+    let mut back: Vec<Start> =
+        ONE_BRANCH.into_iter().filter(allowed).map(|kind| aimed_at(&start, kind)).collect();
+    if problem.task().body().is_some() && problem.types().is_empty() && !problem.is_function() {
+        let other = swapped(problem, end).and_then(|drive| on_one_branch(problem, &drive));
+        back.push(start);
+        back.extend(other);
+    }
+    back
 }
 
 fn aimed_at(start: &Start, kind: LinkageType) -> Start {

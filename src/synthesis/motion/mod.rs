@@ -16,8 +16,8 @@ mod starts;
 
 use super::belief::{Belief, NEARLY, SAME_OPTIMUM};
 use super::constants::motion::{
-    ASTRAY, BATCH, CROSSED_EVERY, FAMILY_BATCHES, HITS, KEPT, LEADERS, LEAST_BATCHES, LONG, NEAR, NEAR_EVERY,
-    NEAR_HITS, QUIET_BATCHES, QUIET_ROUNDS, QUIET_TIMES, SHORT,
+    ASTRAY, BATCH, CROSSED_EVERY, EXACT_WEIGHT, FAMILY_BATCHES, HITS, KEPT, LEADERS, LEAST_BATCHES, LONG,
+    NEAR, NEAR_EVERY, NEAR_HITS, QUIET_BATCHES, QUIET_ROUNDS, QUIET_TIMES, SHORT,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
 use super::family::{climb, freedom};
@@ -27,6 +27,7 @@ use super::polish::promising;
 use super::required::strayed;
 use super::states::{MotionState, SearchState, of_as_many_points};
 use super::{Context, HitsSoFar};
+use crate::judge::assess::assess_again;
 use crate::judge::rank::{exact_cost, searched, sort};
 use crate::judge::warm::start_at;
 use crate::numbers::arithmetic::streams::{Stream, stream};
@@ -34,7 +35,8 @@ use crate::record::{Candidate, Repeats};
 use crate::task::Problem;
 use crate::task::forms::start::Start;
 pub(super) use starts::DyadStarts;
-use starts::{least_sine, swapped};
+use starts::least_sine;
+pub(super) use starts::swapped;
 
 struct Motion<'a> {
     starts: DyadStarts<'a>,
@@ -56,10 +58,36 @@ enum Kind {
 }
 
 /// Searches until the best is believed, the limit is reached, or the patience is at an end; `None` if the task is no
-/// motion.
+/// motion. Poses that have to be met exactly weigh more in the search, so that its answers are near to what the polish
+/// makes of them.
 pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found> {
     let problem = context.problem;
     problem.task().body()?;
+    let Some(weighted) = with_exact_ones_weighted(problem) else {
+        return search_as_it_is(context, allowance);
+    };
+    let mut found = search_as_it_is(context.of(&weighted), allowance)?;
+    found.candidates = found.candidates.iter().filter_map(|found| assess_again(problem, found)).collect();
+    sort(problem, &mut found.candidates);
+    Some(found)
+}
+
+/// Returns the problem with larger weights of the poses whose tolerance is zero; `None` if there are none.
+fn with_exact_ones_weighted(problem: &Problem) -> Option<Problem> {
+    let mut spec = problem.spec().clone();
+    let tolerances = spec.task.tolerance.as_ref()?;
+    if tolerances.iter().all(|tolerance| *tolerance > 0.0) {
+        return None;
+    }
+    let weight = |tolerance: &f64| if *tolerance > 0.0 { 1.0 } else { EXACT_WEIGHT };
+    let weights = tolerances.iter().map(weight).zip(problem.task().weights()).map(|(more, own)| more * own);
+    spec.task.weight = Some(weights.collect());
+    Problem::new(spec).ok()
+}
+
+/// Searches for the poses with the weights that they have.
+fn search_as_it_is(context: Context<'_>, allowance: Allowance) -> Option<Found> {
+    let problem = context.problem;
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().motion.clone());
     let earlier = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best));
     let mut search = Motion {

@@ -224,7 +224,7 @@ fn made(
 /// ```text
 /// e' = (A + a e + b u - B)/c,   u' = -u,   Z' = b - Z,   beta' = beta + pi
 /// ```
-pub(super) fn swapped(problem: &Problem, start: &Start) -> Option<Start> {
+pub(in crate::synthesis) fn swapped(problem: &Problem, start: &Start) -> Option<Start> {
     let space = problem.space(start.setting.side);
     let shape = space.shape(&start.design)?;
     let exchanged = Shape {

@@ -41,9 +41,19 @@ pub fn own_scales<const N: usize>(x: &[f64; N]) -> Scales {
     }
 }
 
+/// What a fit keeps of the positions as they are at its start, where the problem requires it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// Nothing.
+    Nothing,
+    /// Their order around the curve.
+    Order,
+    /// Their order and, in a motion, the branch on which they all are.
+    OrderAndBranch,
+}
+
 /// Calls `user` with the fit of a problem at a start; `None` if the start has no positions and the timing is free.
-/// `ordered`: whether positions are held in their present order around the curve, if the problem requires an order.
-pub fn on_fit<U: FitUser>(problem: &Problem, start: &Start, ordered: bool, user: U) -> Option<U::Output> {
+pub fn on_fit<U: FitUser>(problem: &Problem, start: &Start, kept: Kept, user: U) -> Option<U::Output> {
     let Start { design, setting, positions, scales } = start;
     let is_timed = positions.is_empty() || problem.task().is_partly_timed();
     match (is_timed, problem.task().body()) {
@@ -65,11 +75,17 @@ pub fn on_fit<U: FitUser>(problem: &Problem, start: &Start, ordered: bool, user:
         }
         (false, None) => {
             let fit = PathFit::new(problem, *setting);
-            Some(user.on(&if ordered { fit.in_order(design, positions) } else { fit }, *design))
+            let fit = if kept == Kept::Nothing { fit } else { fit.in_order(design, positions) };
+            Some(user.on(&fit, *design))
         }
         (false, Some(_)) => {
             let fit = MotionFit::new(problem, *setting);
-            Some(user.on(&if ordered { fit.in_order(design, positions) } else { fit }, *design))
+            let fit = match kept {
+                Kept::Nothing => fit,
+                Kept::Order => fit.in_order(design, positions),
+                Kept::OrderAndBranch => fit.in_order(design, positions).on_its_branch(design, positions),
+            };
+            Some(user.on(&fit, *design))
         }
     }
 }

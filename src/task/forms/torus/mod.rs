@@ -28,7 +28,7 @@ use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape};
 use super::rows::{Motion, Place, Requirements, Row, assembly_of};
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::{linkage_type, ways_round, wrapped};
-use crate::mechanism::{AssemblyMode, Complex, LinkageType, dot, turned, xy};
+use crate::mechanism::{AssemblyMode, Complex, LinkageType, cross, dot, turned, xy};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
@@ -53,6 +53,8 @@ pub struct TorusFit<'a, const R: usize> {
     requirements: Requirements,
     /// The sense along the curves in which the points follow each other; 0: no order is kept.
     sense: f64,
+    /// The assembly in which all points are held; `None`: any.
+    assembly: Option<AssemblyMode>,
 }
 
 /// The fit of a path: two rows a target.
@@ -65,7 +67,7 @@ impl<'a, const R: usize> TorusFit<'a, R> {
     pub fn new(problem: &'a Problem, setting: Setting) -> Self {
         let space = problem.space(setting.side);
         let requirements = problem.requirements(&space);
-        TorusFit { problem, setting, space, requirements, sense: 0.0 }
+        TorusFit { problem, setting, space, requirements, sense: 0.0, assembly: None }
     }
 
     /// Returns the same fit with the points held in their present order around the curve, if the problem requires an
@@ -80,6 +82,25 @@ impl<'a, const R: usize> TorusFit<'a, R> {
         }
         let Some(shape) = self.space.shape(x) else { return self };
         self.sense = orientation(&shape, positions);
+        self
+    }
+
+    /// Returns the same fit with the points held in the assembly in which they all are, if the problem requires one branch.
+    ///
+    /// With v = B - C the distance of B from the line C D, on the side on which it is, stays positive:
+    ///
+    /// ```text
+    /// t1 <i u, -v> = t1 (v x u) = c sin mu >= 0
+    /// ```
+    #[must_use]
+    pub fn on_its_branch(mut self, x: &Design, positions: &Positions) -> Self {
+        if self.problem.branch_any() {
+            return self;
+        }
+        let Some(shape) = self.space.shape(x) else { return self };
+        let mut assemblies = positions.iter().map(|[e, u]| assembly_of(&shape, *e, *u));
+        let first = assemblies.next();
+        self.assembly = first.filter(|first| assemblies.all(|other| other == *first));
         self
     }
 
@@ -242,7 +263,41 @@ fn orientation(shape: &Shape, positions: &Positions) -> f64 {
     if by_u == 0.0 { 0.0 } else { runs * crank_rises * by_u.signum() }
 }
 
+/// The distance of B from the line C D that is aimed at where points are held in one assembly, in parts of the target's
+/// size.
+const BRANCH_MARGIN: f64 = 1e-9;
+
 impl<const R: usize> TorusFit<'_, R> {
+    /// Returns the row that holds a point in an assembly, with its derivatives.
+    fn side_of_toggle(
+        &self,
+        value: f64,
+        assembly: AssemblyMode,
+        x: &Design,
+        shape: &Shape,
+        (j, position): (usize, [Complex; 2]),
+    ) -> ConstraintRow<DESIGN> {
+        let [e, u] = position;
+        let sign = assembly.sign();
+        let to_pivot = shape.follower_pivot - shape.crank_pivot - e * shape.crank;
+        let mut by_shape = [0.0; SHAPE];
+        by_shape[..5].copy_from_slice(&[-u.im, u.re, u.im, -u.re, -cross(e, u)].map(|d| sign * d));
+        let by_turns = [-cross(turned(e), u) * shape.crank, dot(to_pivot, u)].map(|d| sign * d);
+        let (y, by_e, by_u) = frame(shape, position);
+        let n2 = by_e * by_e + by_u * by_u;
+        let mut own = [None; MOST_OWN];
+        if n2 > 0.0 {
+            let miss = [-y.re, -y.im, y.re, y.im, -dot(y, e), -dot(y, u), shape.follower, 0.0, 0.0];
+            let by_return = (by_turns[0] * by_e + by_turns[1] * by_u) / n2;
+            for (out, miss) in by_shape.iter_mut().zip(miss) {
+                *out += by_return * miss;
+            }
+            let by_step = (by_turns[0] * by_u - by_turns[1] * by_e) / n2.sqrt();
+            own[0] = Some((j, self.forward() * by_step));
+        }
+        ConstraintRow { value, gradient: self.space.chain_rule(x, shape).by_design(&by_shape, 0.0), own }
+    }
+
     /// Returns the derivatives of a position's crank angle: by the shape, with the least-norm return to its curve, and
     /// by its own step. Zero if the curve has no tangent.
     fn crank_of(&self, shape: &Shape, position: [Complex; 2]) -> ([f64; SHAPE], f64) {
@@ -465,5 +520,13 @@ impl<const R: usize> BlockLeastSquares<DESIGN, R> for TorusFit<'_, R> {
         self.requirements.rows(self.setting.aim, &shape, &motion, frame, &mut |row| {
             each(row.value, &|| self.constraint(row, x, &shape, state, ends));
         });
+        if let Some(assembly) = self.assembly {
+            let margin = BRANCH_MARGIN * self.problem.task().size();
+            for (j, [e, u]) in state.iter().enumerate() {
+                let to_pivot = shape.follower_pivot - shape.crank_pivot - e * shape.crank;
+                let value = assembly.sign() * cross(to_pivot, *u) - margin;
+                each(value, &|| self.side_of_toggle(value, assembly, x, &shape, (j, state[j])));
+            }
+        }
     }
 }
