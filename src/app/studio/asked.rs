@@ -7,6 +7,7 @@ use super::targets::{BodyAsk, FunctionAsk};
 use crate::files::diagnostic::Diagnostic;
 use crate::files::problem_file::{self, ProblemFile};
 use crate::mechanism::MAX_MAGNITUDE;
+use crate::task::ranges::RangesSpec;
 use crate::task::region::Region;
 use crate::task::spec::{ProblemSpec, RawPoints};
 use crate::task::{AngleOffset, TaskError, TaskKind};
@@ -38,6 +39,9 @@ pub enum NotHere {
     /// Some crank angles are prescribed and others free.
     #[error("the studio has no free crank angles among given ones: run it with `linkwright synth`")]
     PartlyTimed,
+    /// The ranges of a function are free.
+    #[error("the studio has no free ranges of functions: run it with `linkwright synth`")]
+    FreeRanges,
     /// The problem is another one after it is converted to an edit and back.
     #[error("the studio cannot hold all of this problem ({0}): run it with `linkwright synth`")]
     Other(String),
@@ -292,6 +296,9 @@ impl Ask {
         if path.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
             return Err(NotHere::PartlyTimed);
         }
+        if path.output.as_ref().is_some_and(|output| output.ranges != RangesSpec::default()) {
+            return Err(NotHere::FreeRanges);
+        }
         let (n, kind) = (path.len(), path.kind());
         let fewest = if kind == TaskKind::Path { FEWEST_POINTS } else { FEWEST_TARGETS };
         if !(fewest..=MOST_POINTS).contains(&n) {
@@ -402,6 +409,10 @@ mod tests {
                 let problem = load_any(&path, &[]).expect("a problem");
                 if problem.spec.task.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
                     assert!(matches!(Ask::of(&problem), Err(NotHere::PartlyTimed)), "{}", path.display());
+                    continue;
+                }
+                if problem.spec.task.output.as_ref().is_some_and(|o| o.ranges != RangesSpec::default()) {
+                    assert!(matches!(Ask::of(&problem), Err(NotHere::FreeRanges)), "{}", path.display());
                     continue;
                 }
                 let ask = Ask::of(&problem).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
