@@ -8,6 +8,7 @@ const LABELS: Record<string, [label: string, row?: string]> = {
   transmission_deg_min: ["least transmission angle", "worst transmission angle, °"],
   link_ratio_max: ["longest over shortest link", "longest to shortest link"],
   pivots_in: ["both fixed pivots inside a box", "fixed pivots inside"],
+  pivot_on: ["a fixed pivot on its line"],
   footprint_in: ["everything inside a box", "motion inside"],
   transmission_over: ["transmission angle judged"],
   direction: ["the crank turns", "direction"],
