@@ -23,6 +23,11 @@ impl Effort {
         Effort { steps, rounds, relative_reduction: 1e-12, on_branch: false }
     }
 
+    /// Returns the effort of a fit that counts as converged at this relative reduction of the cost.
+    pub const fn until(self, relative_reduction: f64) -> Self {
+        Effort { relative_reduction, ..self }
+    }
+
     /// Returns the effort of a fit that holds the points of a motion on the branch on which they all start.
     pub const fn on_branch(self) -> Self {
         Effort { on_branch: true, ..self }
@@ -273,10 +278,9 @@ pub mod free {
     pub const WORTH_FINISHING: f64 = 4.0;
     pub const DENSE_WORTH_FINISHING: f64 = 2.0;
     /// The efforts of short fits and of longer ones; ends are finished by [`super::multistart::LONG_FIT`].
-    pub const SHORT_FIT: Effort = Effort { steps: 16, rounds: 2, relative_reduction: 1e-4, on_branch: false };
+    pub const SHORT_FIT: Effort = Effort::of(16, 2).until(1e-4);
     /// The effort of fits further to an end on the explored points.
-    pub const MIDDLE_FIT: Effort =
-        Effort { steps: 100, rounds: 6, relative_reduction: 1e-6, on_branch: false };
+    pub const MIDDLE_FIT: Effort = Effort::of(100, 6).until(1e-6);
     /// Range of random steps away from a known end, in parts of a length or of the target's size.
     pub const JITTER: (f64, f64) = (0.01, 0.5);
     /// Range of the factor of the difference that is added.
@@ -444,9 +448,9 @@ pub mod front {
     pub const GAPS: usize = 4;
     pub const LEAST_GAP: f64 = 0.08;
     /// The effort of fits before the last ones.
-    pub const EFFORT: Effort = Effort { steps: 40, rounds: 5, relative_reduction: 1e-4, on_branch: false };
+    pub const EFFORT: Effort = Effort::of(40, 5).until(1e-4);
     /// The effort of the last fits of the members.
-    pub const LAST: Effort = Effort { steps: 120, rounds: 8, relative_reduction: 1e-9, on_branch: false };
+    pub const LAST: Effort = Effort::of(120, 8).until(1e-9);
     /// Starts of a fit.
     pub const NEAREST: usize = 2;
     /// First steps of a push: in degrees, and of the logarithm of other figures; a push ends at this part of its first

@@ -183,7 +183,7 @@ pub(super) fn fit_and_judge<S: Send>(
 
 /// Returns the promise of a start, by which starts are screened: the cost plus the squared violation of the
 /// requirements, in the units of the cost; `None` if it has no cost.
-pub fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
+pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     let task = problem.task();
     let weight: f64 = task.weights().iter().sum();
     let scale = weight * task.error_size().powi(2);

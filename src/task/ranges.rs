@@ -12,8 +12,8 @@
 //! e_j = dpsi_j - s (psi_j - psi_0) / k       sum_j w_j e_j^2       (the true error of the output is k e_j)
 //! ```
 //!
-//! What remains is that any function is nearly a parabola over a short stretch of its linkage; the lower bounds of the
-//! ranges keep answers of that kind out.
+//! Over a short stretch of its motion any linkage gives nearly a parabola, and so nearly any function; the lower bounds of
+//! the ranges keep answers of that kind out.
 //!
 //! At given positions the best k is linear: e_j = dpsi_j - u s y_j - c with u = 1/k, y_j the follower's angles on one turn.
 

@@ -7,7 +7,6 @@ use super::targets::{BodyAsk, FunctionAsk};
 use crate::files::diagnostic::Diagnostic;
 use crate::files::problem_file::{self, ProblemFile};
 use crate::mechanism::MAX_MAGNITUDE;
-use crate::task::ranges::RangesSpec;
 use crate::task::region::Region;
 use crate::task::spec::{ProblemSpec, RawPoints};
 use crate::task::{AngleOffset, TaskError, TaskKind};
@@ -296,7 +295,7 @@ impl Ask {
         if path.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
             return Err(NotHere::PartlyTimed);
         }
-        if path.output.as_ref().is_some_and(|output| output.ranges != RangesSpec::default()) {
+        if path.output.as_ref().is_some_and(|output| output.ranges.is_free()) {
             return Err(NotHere::FreeRanges);
         }
         let (n, kind) = (path.len(), path.kind());
@@ -411,7 +410,7 @@ mod tests {
                     assert!(matches!(Ask::of(&problem), Err(NotHere::PartlyTimed)), "{}", path.display());
                     continue;
                 }
-                if problem.spec.task.output.as_ref().is_some_and(|o| o.ranges != RangesSpec::default()) {
+                if problem.spec.task.output.as_ref().is_some_and(|output| output.ranges.is_free()) {
                     assert!(matches!(Ask::of(&problem), Err(NotHere::FreeRanges)), "{}", path.display());
                     continue;
                 }

@@ -4,11 +4,11 @@
 //! A round makes a linkage of every two of its dyads ([`starts`]), fits the `SHORT` most promising for a few steps and the
 //! best `LONG` of them to convergence, and has the ends judged, driven from either side. Rounds run in parallel in batches
 //! and are read in their order: the number of threads changes nothing but the time. The search ends when enough rounds
-//! have reached the best answer (or the search has gone on for several times as long as it took to reach it) and as many distinct answers as were asked for are known, or no new one has come for
-//! `QUIET_BATCHES` batches; an exact answer needs no second hit. Some rounds start from known answers instead, near them or
-//! with one of their dyads ([`crossing`]); these do not count as hits. Pivots that are to lie on lines have dyads of their own
-//! ([`on_lines`]). Where exact answers form a family ([`super::family`]), several
-//! batches are searched and the best answers led to better transmission angles.
+//! have reached the best answer (or the search has gone on for several times as long as it took to reach it) and as many
+//! distinct answers as were asked for are known, or no new one has come for `QUIET_BATCHES` batches; an exact answer needs
+//! no second hit. Some rounds start from known answers instead, near them or with one of their dyads ([`crossing`]); these
+//! do not count as hits. Pivots that are to lie on lines have dyads of their own ([`on_lines`]). Where exact answers form a
+//! family ([`super::family`]), several batches are searched and the best answers led to better transmission angles.
 
 mod crossing;
 mod on_lines;
@@ -239,9 +239,7 @@ fn on_course(problem: &Problem, fitted: Vec<(f64, Start)>) -> Vec<(f64, Start)> 
     for (merit, start) in fitted {
         if !strayed(problem, &start) {
             kept.push((merit, start));
-        } else if let Some(other) = swapped(problem, &start)
-            .filter(|other| problem.spec().require.pivot_on.is_none() && !strayed(problem, other))
-        {
+        } else if let Some(other) = swapped(problem, &start).filter(|other| !strayed(problem, other)) {
             kept.push((merit, other));
         } else {
             astray.push((merit, start));

@@ -139,10 +139,6 @@ impl<'a> DyadStarts<'a> {
             side: CouplerSide::of(pair.shape.offset.im),
         };
         let as_it_is = made(self.problem, setting, &pair.shape, pair.frame_angle, positions)?;
-        if self.are_on_lines() {
-            // Crank and follower have lines of their own.
-            return Some(as_it_is);
-        }
         let other = swapped(self.problem, &as_it_is);
         let serves = |start: &Start| is_on_one_branch(self.problem, start);
         match other {
@@ -219,12 +215,16 @@ fn made(
     })
 }
 
-/// Returns the start with crank and follower exchanged: the same linkage, driven from its other side.
+/// Returns the start with crank and follower exchanged: the same linkage, driven from its other side; `None` where the fixed
+/// pivots have lines of their own.
 ///
 /// ```text
 /// e' = (A + a e + b u - B)/c,   u' = -u,   Z' = b - Z,   beta' = beta + pi
 /// ```
 pub(in crate::synthesis) fn swapped(problem: &Problem, start: &Start) -> Option<Start> {
+    if problem.spec().require.pivot_on.is_some() {
+        return None;
+    }
     let space = problem.space(start.setting.side);
     let shape = space.shape(&start.design)?;
     let exchanged = Shape {

@@ -41,14 +41,14 @@ pub fn own_scales<const N: usize>(x: &[f64; N]) -> Scales {
     }
 }
 
-/// What a fit keeps of the positions as they are at its start, where the problem requires it.
+/// Selects what of the positions a fit keeps as it is at its start, where the problem requires it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
-    /// Nothing.
+    /// The fit keeps nothing.
     Nothing,
-    /// Their order around the curve.
+    /// The fit keeps the order of the positions around the curve.
     Order,
-    /// Their order and, in a motion, the branch on which they all are.
+    /// The fit keeps their order and, in a motion, the branch on which they all are.
     OrderAndBranch,
 }
 

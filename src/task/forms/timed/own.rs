@@ -33,7 +33,6 @@ impl<const N: usize, const R: usize> TimedFit<'_, N, R> {
         state: &Positions,
     ) -> Motion<'static> {
         let timed = self.motion(x, shape, scale);
-
         let Motion::Stretch(mut low, mut high, assembly) = timed else { return timed };
         for (j, guess) in self.crank_angles(x, shape).into_iter().enumerate() {
             if let Some(crank) = self.own_crank(j, state) {

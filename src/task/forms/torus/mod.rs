@@ -212,6 +212,11 @@ fn frame(shape: &Shape, [e, u]: [Complex; 2]) -> (Complex, f64, f64) {
     (y, dot(y, turned(e)) * shape.crank, dot(y, turned(u)) * shape.coupler)
 }
 
+/// Returns h, the derivatives of (c^2 - |Y|^2)/2 by the shape at a position: what the return to its curve makes up for.
+fn misses(shape: &Shape, y: Complex, [e, u]: [Complex; 2]) -> [f64; SHAPE] {
+    [-y.re, -y.im, y.re, y.im, -dot(y, e), -dot(y, u), shape.follower, 0.0, 0.0]
+}
+
 /// Returns the unit tangent (dphi, domega) of the curve at a position.
 fn tangent_of(shape: &Shape, position: [Complex; 2]) -> Option<[f64; 2]> {
     let (_, by_e, by_u) = frame(shape, position);
@@ -287,9 +292,8 @@ impl<const R: usize> TorusFit<'_, R> {
         let n2 = by_e * by_e + by_u * by_u;
         let mut own = [None; MOST_OWN];
         if n2 > 0.0 {
-            let miss = [-y.re, -y.im, y.re, y.im, -dot(y, e), -dot(y, u), shape.follower, 0.0, 0.0];
             let by_return = (by_turns[0] * by_e + by_turns[1] * by_u) / n2;
-            for (out, miss) in by_shape.iter_mut().zip(miss) {
+            for (out, miss) in by_shape.iter_mut().zip(misses(shape, y, position)) {
                 *out += by_return * miss;
             }
             let by_step = (by_turns[0] * by_u - by_turns[1] * by_e) / n2.sqrt();
@@ -306,9 +310,7 @@ impl<const R: usize> TorusFit<'_, R> {
         if n2 == 0.0 {
             return ([0.0; SHAPE], 0.0);
         }
-        let [e, u] = position;
-        let miss = [-y.re, -y.im, y.re, y.im, -dot(y, e), -dot(y, u), shape.follower, 0.0, 0.0];
-        (miss.map(|h| h * by_e / n2), self.forward() * by_u / n2.sqrt())
+        (misses(shape, y, position).map(|h| h * by_e / n2), self.forward() * by_u / n2.sqrt())
     }
 
     /// Returns the row of a requirement with its derivatives by the design and by the points' own steps; `ends` are the
@@ -427,9 +429,9 @@ impl<const R: usize> BlockLeastSquares<DESIGN, R> for TorusFit<'_, R> {
             }
             if let Some(body) = body.filter(|body| body.angles[j].is_some()) {
                 let weight = body.angle_weight;
-                let miss = [-y.re, -y.im, y.re, y.im, -dot(y, e), -dot(y, u), shape.follower, 0.0, 0.0];
                 block.residual[ANGLE_ROW] = angle_residual(body, j, u, self.space.offset(x));
-                block.jacobian[ANGLE_ROW] = rule.by_design(&miss.map(|h| -weight * h * by_u / n2), -weight);
+                block.jacobian[ANGLE_ROW] =
+                    rule.by_design(&misses(&shape, y, *position).map(|h| -weight * h * by_u / n2), -weight);
                 block.tangent[ANGLE_ROW] = self.forward() * weight * by_e / n2.sqrt();
             }
             each(&block);
