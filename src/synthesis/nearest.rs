@@ -181,15 +181,15 @@ fn free(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyM
     Some(unwrapped(problem, linkage, angles, assemblies))
 }
 
-/// Scales of a function's inputs at which a linkage is tried, where their range is free.
+/// Scales of a function's inputs at which a linkage is tried where their range is free, and those that are refined.
 const SCALES: usize = 40;
-
-/// Returns the scales of a function's inputs at which a linkage is tried: 1 alone where their range is as written.
-fn scales_tried(problem: &Problem) -> Vec<f64> {
-    let (low, high) = problem.task().ranges().input;
-    let part = |i: usize| i as f64 / (SCALES - 1) as f64;
-    if low == high { vec![low] } else { (0..SCALES).map(|i| low * (high / low).powf(part(i))).collect() }
-}
+const SCALES_REFINED: usize = 3;
+/// The places on either side of an offset at which it is looked for anew when the scale of the inputs changes, and their steps,
+/// degrees.
+const BESIDE: i32 = 20;
+const BESIDE_STEP_DEG: f64 = 1.0;
+/// Steps by thirds to the last digit.
+const THIRDS: usize = 100;
 
 fn prescribed(
     problem: &Problem,
@@ -197,88 +197,114 @@ fn prescribed(
     offset: AngleOffset,
 ) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let written = &problem.spec().task.timing.as_ref()?.crank_deg;
-    let assemblies = vec![linkage.assembly(); written.len()];
-    let scales = scales_tried(problem);
-    // A direction is a sign with the scale of a function's inputs.
-    let angles = |direction: f64, base_deg: f64| -> Vec<f64> {
-        written.iter().map(|deg| base_deg + direction * deg).collect()
-    };
-    // The inputs of a function run as they are written, whichever way its outputs count.
-    let directions = if problem.is_function() { scales.as_slice() } else { problem.directions() };
-    let sum = |direction: f64, base_deg: f64| {
-        let radians: Vec<f64> = angles(direction, base_deg).iter().map(|d| d.to_radians()).collect();
-        problem.task().errors(linkage, &radians, &assemblies, None).map_or(f64::INFINITY, |e| e.objective)
-    };
     let given = match offset {
         AngleOffset::Fixed => Some(0.0),
         AngleOffset::Ground => Some(linkage.ground_angle().to_degrees()),
         AngleOffset::Free => None,
     };
-    if let Some(base) = given {
-        let all = directions.iter().map(|direction| (sum(*direction, base), *direction));
-        let (least, mut direction) = all.min_by(|one, other| one.0.total_cmp(&other.0))?;
-        if let [one, other, ..] = scales.as_slice() {
-            let (low, high) = problem.task().ranges().input;
-            let between = ((direction * one / other).max(low), (direction * other / one).min(high));
-            let refined = least_between(between, THIRDS, |scale| sum(scale, base));
-            direction = if sum(refined, base) <= least { refined } else { direction };
+    let of =
+        Prescribed { problem, linkage, written, assemblies: vec![linkage.assembly(); written.len()], given };
+    let found = match (problem.is_function(), given) {
+        (true, _) if problem.task().ranges().free()[0] => of.scaled(),
+        // The inputs of a function run as they are written, whichever way its outputs count.
+        (true, _) | (false, Some(_)) => of.on_whole_turn(1.0),
+        (false, None) => {
+            let all = problem.directions().iter().map(|direction| of.sampled(*direction));
+            of.refined(all.min_by(Placed::compare)?)
         }
-        return Some((angles(direction, base), assemblies));
-    }
-    let step = 360.0 / DEFAULT_SAMPLES as f64;
-    let samples = |&direction: &f64| (0..DEFAULT_SAMPLES).map(move |i| (direction, step * i as f64));
-    let all = directions.iter().flat_map(samples);
-    let measured = all.map(|(direction, offset)| (sum(direction, offset), direction, offset));
-    let (least, direction, offset) = measured.min_by(|one, other| one.0.total_cmp(&other.0))?;
-    let of_offset = |direction: f64, offset: f64| {
-        let refined = least_between((offset - step, offset + step), THIRDS, |offset| sum(direction, offset));
-        (sum(direction, refined), refined)
     };
-    let (mut best, mut at) = (least, (direction, offset));
-    let (found, refined) = of_offset(direction, offset);
-    if found <= best {
-        (best, at) = (found, (direction, refined));
-    }
-    if let [one, other, ..] = scales.as_slice() {
-        // The scale of the inputs too, between those that were tried on either side of the best ones.
-        let (low, high) = problem.task().ranges().input;
-        let around = |scale: f64, offset: f64| {
-            let places = (-BESIDE..=BESIDE).map(|k| offset + f64::from(k) * BESIDE_STEP_DEG);
-            let nearest = places.map(|offset| (sum(scale, offset), offset));
-            let (_, offset) = nearest.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or((0.0, offset));
-            let beside = (offset - BESIDE_STEP_DEG, offset + BESIDE_STEP_DEG);
-            let refined = least_between(beside, THIRDS / 2, |offset| sum(scale, offset));
-            (sum(scale, refined), refined)
-        };
-        let mut tried: Vec<(f64, f64, f64)> = directions
-            .iter()
-            .filter_map(|direction| {
-                let of_one = samples(direction).map(|(scale, offset)| (sum(scale, offset), scale, offset));
-                of_one.min_by(|one, other| one.0.total_cmp(&other.0))
-            })
-            .collect();
-        tried.sort_by(|one, other| one.0.total_cmp(&other.0));
-        for (_, scale, offset) in tried.into_iter().take(SCALES_REFINED) {
-            let between = ((scale * one / other).max(low), (scale * other / one).min(high));
-            let scale = least_between(between, THIRDS / 3, |scale| around(scale, offset).0);
-            let (found, offset) = around(scale, offset);
-            if found <= best {
-                (best, at) = (found, (scale, offset));
-            }
-        }
-    }
-    best.is_finite().then(|| (angles(at.0, at.1), assemblies))
+    (given.is_some() || found.sum.is_finite())
+        .then(|| (of.crank_deg(found.run, found.base_deg), of.assemblies))
 }
 
-/// The places on either side of an offset at which it is looked for anew when the scale of the inputs changes, and their steps,
-/// degrees.
-const BESIDE: i32 = 20;
-const BESIDE_STEP_DEG: f64 = 1.0;
-/// Scales of the inputs from which the best one is refined.
-const SCALES_REFINED: usize = 3;
+/// Crank angles run psi_j + base, psi_j as written, with the sum of the errors there; `run` is a direction, or the scale of a
+/// function's inputs.
+#[derive(Clone, Copy)]
+struct Placed {
+    sum: f64,
+    run: f64,
+    base_deg: f64,
+}
 
-/// Steps by thirds to the last digit.
-const THIRDS: usize = 100;
+impl Placed {
+    fn compare(&self, other: &Placed) -> std::cmp::Ordering {
+        self.sum.total_cmp(&other.sum)
+    }
+}
+
+/// A linkage at prescribed crank angles.
+struct Prescribed<'a> {
+    problem: &'a Problem,
+    linkage: &'a FourBar,
+    written: &'a [f64],
+    assemblies: Vec<AssemblyMode>,
+    /// The angle that is added to those written, degrees; `None`: any.
+    given: Option<f64>,
+}
+
+impl Prescribed<'_> {
+    fn crank_deg(&self, run: f64, base_deg: f64) -> Vec<f64> {
+        self.written.iter().map(|deg| base_deg + run * deg).collect()
+    }
+
+    fn at(&self, run: f64, base_deg: f64) -> Placed {
+        let radians: Vec<f64> = self.crank_deg(run, base_deg).iter().map(|d| d.to_radians()).collect();
+        let errors = self.problem.task().errors(self.linkage, &radians, &self.assemblies, None);
+        Placed { sum: errors.map_or(f64::INFINITY, |e| e.objective), run, base_deg }
+    }
+
+    /// Returns the best of evenly spaced bases, or the given one.
+    fn sampled(&self, run: f64) -> Placed {
+        let step = 360.0 / DEFAULT_SAMPLES as f64;
+        let first = self.at(run, self.given.unwrap_or(0.0));
+        let others = if self.given.is_none() { DEFAULT_SAMPLES } else { 1 };
+        let better = |best: Placed, other: Placed| if other.compare(&best).is_lt() { other } else { best };
+        (1..others).map(|i| self.at(run, step * i as f64)).fold(first, better)
+    }
+
+    /// Returns the best base within a sampling step of one, or the given one.
+    fn refined(&self, from: Placed) -> Placed {
+        self.refined_within(from, 360.0 / DEFAULT_SAMPLES as f64, THIRDS)
+    }
+
+    fn refined_within(&self, from: Placed, step_deg: f64, thirds: usize) -> Placed {
+        if self.given.is_some() {
+            return from;
+        }
+        let (run, base) = (from.run, from.base_deg);
+        let refined =
+            least_between((base - step_deg, base + step_deg), thirds, |base| self.at(run, base).sum);
+        let refined = self.at(run, refined);
+        if refined.sum <= from.sum { refined } else { from }
+    }
+
+    fn on_whole_turn(&self, run: f64) -> Placed {
+        self.refined(self.sampled(run))
+    }
+
+    /// Returns the best base near another one, for a scale of the inputs.
+    fn near(&self, run: f64, base_deg: f64) -> Placed {
+        let places = if self.given.is_some() { 0..=0 } else { -BESIDE..=BESIDE };
+        let all = places.map(|k| self.at(run, base_deg + f64::from(k) * BESIDE_STEP_DEG));
+        let best = all.min_by(Placed::compare).unwrap_or_else(|| self.at(run, base_deg));
+        self.refined_within(best, BESIDE_STEP_DEG, THIRDS / 2)
+    }
+
+    /// Returns the best scale of the inputs within the bounds of their range, with its base.
+    fn scaled(&self) -> Placed {
+        let (low, high) = self.problem.task().ranges().input;
+        let step = (high / low).powf(1.0 / (SCALES - 1) as f64);
+        let mut tried: Vec<Placed> = (0..SCALES).map(|i| self.sampled(low * step.powi(i as i32))).collect();
+        tried.sort_by(Placed::compare);
+        let refined = tried.iter().take(SCALES_REFINED).flat_map(|Placed { run, base_deg, .. }| {
+            let between = ((run / step).max(low), (run * step).min(high));
+            let thirds = if self.given.is_some() { THIRDS } else { THIRDS / 3 };
+            let scale = least_between(between, thirds, |scale| self.near(scale, *base_deg).sum);
+            [self.near(*run, *base_deg), self.near(scale, *base_deg)]
+        });
+        refined.min_by(Placed::compare).unwrap_or(tried[0])
+    }
+}
 
 /// Returns the place of the least value between two, by thirds.
 fn least_between((mut low, mut high): (f64, f64), thirds: usize, value: impl Fn(f64) -> f64) -> f64 {

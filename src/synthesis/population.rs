@@ -19,6 +19,7 @@ use crate::record::{Candidate, Evaluations, Reason};
 use crate::task::Timing;
 use crate::task::forms::body_fitness::BodyFitness;
 use crate::task::forms::fitness::PathFitness;
+use crate::task::forms::genes::DesignFitness;
 use crate::task::forms::reduced::refusal;
 use crate::task::forms::start::{AS_WRITTEN, Start};
 use crate::task::spec::Objective;
@@ -197,44 +198,22 @@ fn search_in<F: Searched>(
     Ok((found(candidates, outcome.evaluations - skipped, reason), starts))
 }
 
-impl Searched for BodyFitness<'_> {
-    fn positions(&self) -> u64 {
-        self.positions_per_evaluation()
-    }
-
-    fn start(&self, x: &[f64], context: Context<'_>) -> Option<Start> {
-        let problem = self.problem();
-        let reading = self.read(x);
-        let space = self.space(reading.setting.side);
-        let design = space.from_free(x);
-        let positions = match problem.task().timing() {
-            Timing::Prescribed { .. } => Vec::new(),
-            Timing::Free => {
-                let sampled =
-                    BodyFitness::positions(self, &space.shape(&design)?, space.offset(&design), &reading)?;
-                settle_positions(context.of(problem), &design, reading.setting, sampled)?
-            }
-        };
-        Some(Start { design, setting: reading.setting, positions, scales: AS_WRITTEN })
-    }
-}
-
-impl Searched for PathFitness<'_> {
+impl<F: DesignFitness + Sync> Searched for F {
     fn positions(&self) -> u64 {
         self.positions_per_evaluation()
     }
 
     fn start(&self, x: &[f64], context: Context<'_>) -> Option<Start> {
         debug_assert_eq!(x.len(), self.bounds().len());
-        let problem = self.problem();
+        let problem = self.genes().problem();
         let reading = self.read(x);
-        let space = self.space(reading.setting.side);
+        let space = self.genes().space(reading.setting.side);
         let design = space.from_free(x);
         let positions = match problem.task().timing() {
             Timing::Prescribed { .. } => Vec::new(),
             Timing::Free => {
                 let shape = space.shape(&design)?;
-                let sampled = PathFitness::positions(self, &shape, &reading)?;
+                let sampled = DesignFitness::positions(self, &shape, space.offset(&design), &reading)?;
                 settle_positions(context.of(problem), &design, reading.setting, sampled)?
             }
         };

@@ -27,6 +27,7 @@ use crate::mechanism::{AssemblyMode, Complex, LinkageType};
 use crate::numbers::optimise::population::{Fitness, PopulationProblem};
 use crate::task::forms::design_space::Shape;
 use crate::task::forms::fitness::{PathFitness, Reading};
+use crate::task::forms::genes::DesignFitness;
 use crate::task::forms::linear_fit::{KnownPivots, Ratios};
 use crate::task::forms::projection::{ProjectedFit, Projection, Solution, ratio_box};
 use crate::task::forms::reduced::known_ground;
@@ -257,7 +258,7 @@ impl<'a> ReducedFitness<'a> {
 
     /// Adds to an evaluation the violation of the design's bounds by its shape.
     fn within_bounds(&self, reading: Reading, shape: Shape, offset: f64) -> Read {
-        let space = self.physical.space(reading.setting.side);
+        let space = self.physical.genes().space(reading.setting.side);
         let outside = space.excess(&shape) / self.problem.task().size();
         let fitness = Fitness { violation: reading.fitness.violation + outside, ..reading.fitness };
         Read { fitness, reading, shape, offset }
@@ -297,7 +298,7 @@ impl Searched for ReducedFitness<'_> {
 
     fn start(&self, x: &[f64], context: Context<'_>) -> Option<Start> {
         let Read { reading, shape, offset, .. } = self.read(x).ok()?;
-        let space = self.physical.space(reading.setting.side);
+        let space = self.physical.genes().space(reading.setting.side);
         let design = space.design(&shape, offset);
         if !self.forms.is_empty() {
             return Some(Start {
@@ -310,7 +311,7 @@ impl Searched for ReducedFitness<'_> {
         // Clamped to the bounds, the shape may meet the points at other positions.
         let shape = space.shape(&design)?;
         let reading = self.physical.read_free(reading.setting.side, &shape);
-        let sampled = self.physical.positions(&shape, &reading)?;
+        let sampled = DesignFitness::positions(&self.physical, &shape, offset, &reading)?;
         let positions = settle_positions(context, &design, reading.setting, sampled)?;
         Some(Start { design, setting: reading.setting, positions, scales: AS_WRITTEN })
     }

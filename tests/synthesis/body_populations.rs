@@ -10,6 +10,7 @@ use linkwright::internals::synthesis::multistart::{judged, settle_positions};
 use linkwright::internals::synthesis::{Budget, Context as SearchContext};
 use linkwright::internals::task::forms::body_fitness::BodyFitness;
 use linkwright::internals::task::forms::design_space::Shape;
+use linkwright::internals::task::forms::genes::DesignFitness;
 use linkwright::internals::task::forms::start::{AS_WRITTEN, Start};
 use linkwright::spec::{Method, Objective, ProblemSpec};
 use linkwright::{Problem, load_problem};
@@ -56,7 +57,7 @@ fn the_fitness_of_functions_and_timed_poses_is_the_objective_of_the_judge() {
             if reading.fitness.violation >= 1e-3 {
                 continue;
             }
-            let design = fitness.space(reading.setting.side).from_free(&genes);
+            let design = fitness.genes().space(reading.setting.side).from_free(&genes);
             let start = Start { design, setting: reading.setting, positions: Vec::new(), scales: AS_WRITTEN };
             let Some(candidate) = judged(&problem, &start) else { continue };
             let (cost, objective) = (reading.fitness.cost, candidate.error.objective);
@@ -76,7 +77,7 @@ fn the_positions_of_the_fitness_lead_back_to_the_linkage_that_took_the_poses() {
         let lines = format!("{}[require]\nlink_ratio_max = 100\n", wide(taken.poses[0].0, far));
         let problem = Problem::new(problem(&taken.poses, &lines)).expect("a problem");
         let fitness = BodyFitness::new(&problem).expect("it has angles");
-        let space = fitness.space(taken.linkage.side());
+        let space = fitness.genes().space(taken.linkage.side());
         let shape = Shape::from(&taken.linkage);
         // Every number of the design is free here.
         let design = space.design(&shape, wrapped(taken.frame));

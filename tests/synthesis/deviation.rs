@@ -14,6 +14,7 @@ use linkwright::internals::synthesis::polish::finish;
 use linkwright::internals::synthesis::{Budget, Context};
 use linkwright::internals::task::Problem;
 use linkwright::internals::task::forms::fitness::PathFitness;
+use linkwright::internals::task::forms::genes::DesignFitness;
 use std::sync::atomic::AtomicBool;
 
 const LARGEST: (&str, &str) = ("solve.objective", "max-deviation");
@@ -245,7 +246,7 @@ fn population_searches_lessen_the_largest_deviation_too() {
         let problem = Problem::new(literature("k18", &set).spec).expect("it is one");
         let fitness = PathFitness::new(&problem);
         let start = start_at(&problem, best).expect("it closes");
-        let read = fitness.read(&free(fitness.space(start.setting.side), &start.design)).fitness;
+        let read = fitness.read(&free(fitness.genes().space(start.setting.side), &start.design)).fitness;
         assert!((read.cost - best.error.objective).abs() <= 1e-9 * read.cost, "{read:?}");
     }
 }

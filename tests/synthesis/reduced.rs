@@ -14,6 +14,7 @@ use linkwright::internals::synthesis::reduced_fitness::{ReducedFitness, forms};
 use linkwright::internals::task::Problem;
 use linkwright::internals::task::forms::design_space::{DESIGN, Design, DesignSpace, Shape};
 use linkwright::internals::task::forms::fitness::PathFitness;
+use linkwright::internals::task::forms::genes::DesignFitness;
 use linkwright::internals::task::forms::projection::{ProjectedFit, Projection};
 use linkwright::internals::task::forms::reduced::{Refusal, refusal};
 use linkwright::internals::task::spec::Variables;
@@ -157,7 +158,7 @@ fn the_cost_is_that_of_the_linear_fit_and_of_the_nine_parameters_at_its_shape() 
             ProjectedFit::new(form, assembly).solution(&[x[0], x[1], x[2], x[3]]).expect("it closes");
         assert!((fitness.cost - solution.cost).abs() <= 1e-9 * (1e-3 + solution.cost));
         // The nine parameters take the best of both assemblies and directions.
-        let space = nine.space(CouplerSide::Plus);
+        let space = nine.genes().space(CouplerSide::Plus);
         let shape: Shape = solution.shape;
         let genes = free(space, &space.design(&shape, solution.offset));
         let read = nine.read(&genes).fitness;

@@ -13,16 +13,18 @@
 //!
 //! then the vertex of the parabola through it and its neighbours.
 
-use super::design_space::{DesignSpace, Shape};
+use super::design_space::Shape;
 use super::fitness::{Course, Reading, nothing};
-use super::rows::{Motion, Requirements, nearest_type};
+use super::genes::{DesignFitness, Genes, arcs, is_on_arc};
+use super::rows::nearest_type;
+use super::torus::Positions;
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::{linkage_type, wrapped};
 use crate::mechanism::four_bar::position::Kernel;
-use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType, cross, point};
+use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType, point};
 use crate::numbers::optimise::population::{Fitness, PopulationProblem};
 use crate::task::spec::Objective;
-use crate::task::{AngleOffset, Body, Problem, Setting, Timing, best_frame};
+use crate::task::{Body, Problem, Setting, Timing, best_frame};
 use std::f64::consts::TAU;
 
 /// Number of samples of a circuit for free timing.
@@ -31,18 +33,13 @@ const SAMPLES: usize = 128;
 /// The fitness of a motion or of a function.
 #[derive(Clone, Debug)]
 pub struct BodyFitness<'a> {
-    problem: &'a Problem,
+    genes: Genes<'a>,
     body: &'a Body,
-    spaces: Vec<(CouplerSide, DesignSpace)>,
-    requirements: Requirements,
-    genes: Vec<(f64, f64)>,
     /// The prescribed angles: for each direction, or sense of a function, its sign and e^{i direction psi_j}; none of free
     /// timing.
     clocks: Vec<(f64, Vec<Complex>)>,
     /// The directions of the sampled crank angles of free timing.
     wheel: Vec<Complex>,
-    /// The least and the greatest prescribed angle as written, radians.
-    span: (f64, f64),
     is_largest: bool,
 }
 
@@ -54,68 +51,30 @@ impl<'a> BodyFitness<'a> {
     pub fn new(problem: &'a Problem) -> Option<Self> {
         let task = problem.task();
         let body = task.body().filter(|body| body.ranges().are_written())?;
-        let (mut clocks, mut span) = (Vec::new(), (0.0, 0.0));
-        if let Timing::Prescribed { crank_angles, .. } = task.timing() {
-            span = crank_angles
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &a| (l.min(a), h.max(a)));
-            if task.closed() {
-                span.1 = span.1.max(span.0 + TAU);
+        let clocks = match task.timing() {
+            Timing::Free => Vec::new(),
+            Timing::Prescribed { .. } => {
+                problem.directions().iter().map(|sign| (*sign, problem.phases(*sign))).collect()
             }
-            clocks = problem.directions().iter().map(|sign| (*sign, problem.phases(*sign))).collect();
-        }
-        let spaces: Vec<_> = problem.sides().iter().map(|&side| (side, problem.space(side))).collect();
+        };
         Some(BodyFitness {
-            requirements: problem.requirements(&spaces[0].1),
-            genes: spaces[0].1.free_box(),
-            problem,
+            genes: Genes::new(problem),
             body,
-            spaces,
             clocks,
             wheel: (0..SAMPLES).map(|i| Complex::from_polar(1.0, TAU * i as f64 / SAMPLES as f64)).collect(),
-            span,
             is_largest: problem.spec().solve.objective == Objective::MaxDeviation,
         })
     }
 
     /// Returns the problem.
-    pub fn problem(&self) -> &'a Problem {
-        self.problem
-    }
-
-    /// Returns the design space of a side of the coupler point.
-    pub fn space(&self, side: CouplerSide) -> &DesignSpace {
-        self.spaces.iter().find(|(s, _)| *s == side).map_or(&self.spaces[0].1, |(_, space)| space)
-    }
-
-    /// Returns the number of positions of the linkage that one evaluation computes.
-    pub fn positions_per_evaluation(&self) -> u64 {
-        let n = self.problem.task().len();
-        let each = if self.clocks.is_empty() { SAMPLES + n } else { n * self.clocks.len() };
-        (2 * each * self.spaces.len()) as u64
-    }
-
-    /// Returns the best reading of a design's free numbers.
-    pub fn read(&self, genes: &[f64]) -> Reading {
-        let compared = if self.clocks.is_empty() { self.problem.task().len() * SAMPLES / 8 } else { 0 };
-        computed(self.positions_per_evaluation() as usize + compared);
-        let mut best = nothing();
-        for (side, space) in &self.spaces {
-            let x = space.from_free(genes);
-            let Some(shape) = space.shape(&x) else { continue };
-            if self.clocks.is_empty() {
-                self.free_readings(*side, &shape, space.offset(&x), &mut best);
-            } else {
-                self.timed_readings(*side, &shape, space.offset(&x), &mut best);
-            }
-        }
-        best
+    fn problem(&self) -> &'a Problem {
+        self.genes.problem()
     }
 
     /// Returns a target's part of the cost, for an error of its place and of its angle: squares that are added up, or a deviation
     /// in parts of the tolerances.
     fn part(&self, j: usize, place: f64, angle: f64) -> f64 {
-        let (task, radian) = (self.problem.task(), self.body.angle_weight);
+        let (task, radian) = (self.problem().task(), self.body.angle_weight);
         if !self.is_largest {
             return task.weights()[j] * (place * place + (radian * angle).powi(2));
         }
@@ -132,22 +91,11 @@ impl<'a> BodyFitness<'a> {
         if self.is_largest { parts.fold(0.0, f64::max) } else { parts.sum() }
     }
 
-    /// Returns the angle added to every prescribed one: `offset` if it is free.
-    fn angle_offset(&self, offset: f64, shape: &Shape) -> f64 {
-        match self.problem.task().timing() {
-            Timing::Prescribed { offset: AngleOffset::Free, .. } => offset,
-            Timing::Prescribed { offset: AngleOffset::Ground, .. } => {
-                (shape.follower_pivot - shape.crank_pivot).arg()
-            }
-            _ => 0.0,
-        }
-    }
-
     fn timed_readings(&self, side: CouplerSide, shape: &Shape, offset: f64, best: &mut Reading) {
-        let task = self.problem.task();
-        let offset = self.angle_offset(offset, shape);
+        let task = self.problem().task();
+        let offset = self.genes.angle_offset(offset, shape);
         let turn = Complex::from_polar(1.0, offset);
-        let aim = nearest_type(shape.links(), self.problem.types());
+        let aim = nearest_type(shape.links(), self.problem().types());
         let ground = (shape.follower_pivot - shape.crank_pivot).arg();
         let n = task.len();
         let (mut apart, mut places) = (Vec::with_capacity(n), Vec::with_capacity(n));
@@ -156,7 +104,7 @@ impl<'a> BodyFitness<'a> {
             for (direction, phases) in &self.clocks {
                 apart.clear();
                 places.clear();
-                let sign = if self.problem.is_function() { *direction } else { 1.0 };
+                let sign = if self.problem().is_function() { *direction } else { 1.0 };
                 let mut open = 0.0;
                 for (j, phase) in phases.iter().enumerate() {
                     let crank = phase * turn;
@@ -174,10 +122,9 @@ impl<'a> BodyFitness<'a> {
                 });
                 let error = |j: usize| apart[j].map_or(0.0, |apart: f64| wrapped(apart - frame));
                 let cost = self.total((0..n).map(|j| self.part(j, places[j], error(j))));
-                let run = self.problem.run(*direction);
-                let ends = (run * self.span.0 + offset, run * self.span.1 + offset);
-                let motion = Motion::Stretch(ends.0.min(ends.1), ends.0.max(ends.1), assembly);
-                let lack = self.requirements.lack(aim, shape, &motion, Some(frame));
+                let run = self.problem().run(*direction);
+                let motion = self.genes.timed_motion(run, offset, assembly);
+                let lack = self.genes.requirements.lack(aim, shape, &motion, Some(frame));
                 let violation = if open.is_nan() { f64::INFINITY } else { open + lack };
                 best.offer(Reading {
                     fitness: Fitness { violation, cost },
@@ -190,18 +137,17 @@ impl<'a> BodyFitness<'a> {
 
     fn free_readings(&self, side: CouplerSide, shape: &Shape, frame: f64, best: &mut Reading) {
         let links = shape.links();
-        let aim = nearest_type(links, self.problem.types());
+        let aim = nearest_type(links, self.problem().types());
         let own = linkage_type(links);
-        // A Grashof linkage with a rocking input has a circuit on either side of its ground line.
-        let two_arcs = matches!(own, Some(LinkageType::RockerCrank | LinkageType::DoubleRocker));
-        let arcs: &[f64] = if two_arcs { &[1.0, -1.0] } else { &[0.0] };
         for assembly in [AssemblyMode::Plus, AssemblyMode::Minus] {
             let kernel = shape.kernel(assembly);
             let samples = self.samples(&kernel);
-            for &arc in arcs {
+            for &arc in arcs(own) {
                 let mut course = Course::default();
-                let met: Option<Vec<(f64, f64)>> = (0..self.problem.task().len())
-                    .map(|j| self.nearest(j, (&kernel, &samples), frame, &|i| self.on_arc(shape, arc, i)))
+                let met: Option<Vec<(f64, f64)>> = (0..self.problem().task().len())
+                    .map(|j| {
+                        self.nearest(j, (&kernel, &samples), frame, &|i| is_on_arc(shape, arc, self.wheel[i]))
+                    })
                     .collect();
                 let Some(met) = met else {
                     let setting = Setting { aim, assembly, direction: 1.0, side };
@@ -209,12 +155,13 @@ impl<'a> BodyFitness<'a> {
                     best.offer(Reading { fitness, setting, arc });
                     continue;
                 };
-                let repeated = usize::from(self.problem.task().repeats_first());
+                let repeated = usize::from(self.problem().task().repeats_first());
                 met[..met.len() - repeated].iter().for_each(|(angle, _)| course.pass(*angle));
                 let turns = own.is_some_and(LinkageType::input_turns_fully);
-                let (direction, disorder, motion) = course.judged(turns, self.problem.directions(), assembly);
-                let disorder = if self.problem.order_required() { disorder } else { 0.0 };
-                let lack = self.requirements.lack(aim, shape, &motion, Some(frame));
+                let (direction, disorder, motion) =
+                    course.judged(turns, self.problem().directions(), assembly);
+                let disorder = if self.problem().order_required() { disorder } else { 0.0 };
+                let lack = self.genes.requirements.lack(aim, shape, &motion, Some(frame));
                 let cost = self.total(met.iter().map(|(_, part)| *part));
                 best.offer(Reading {
                     fitness: Fitness { violation: lack + disorder, cost },
@@ -223,11 +170,6 @@ impl<'a> BodyFitness<'a> {
                 });
             }
         }
-    }
-
-    /// Returns whether a sampled crank angle lies on the input arc on one side of the ground line (0: on either).
-    fn on_arc(&self, shape: &Shape, arc: f64, sample: usize) -> bool {
-        arc == 0.0 || cross(shape.follower_pivot - shape.crank_pivot, self.wheel[sample]) * arc > 0.0
     }
 
     fn samples(&self, kernel: &Kernel) -> Vec<Sample> {
@@ -242,7 +184,7 @@ impl<'a> BodyFitness<'a> {
     /// Returns the errors of a target's place and angle at a position.
     fn errors(&self, j: usize, (place, coupler): (Complex, f64), frame: f64) -> (f64, f64) {
         let angle = self.body.angles[j].map_or(0.0, |angle| wrapped(angle - coupler - frame));
-        ((self.problem.task().points()[j] - place).norm(), angle)
+        ((self.problem().task().points()[j] - place).norm(), angle)
     }
 
     /// Returns the crank angle of the position nearest to a target and the target's part of the cost there; `None` if no sample can
@@ -282,26 +224,52 @@ impl<'a> BodyFitness<'a> {
         let refined = (there.gap >= 0.0).then(|| (angle, part((point(there.coupler_point), coupler))));
         Some(refined.filter(|(_, part)| *part <= own.1).unwrap_or(own))
     }
+}
 
-    /// Returns the positions (e_j, u_j) of the targets for free timing, as in the reading of a design; `None` if a target finds no
-    /// position.
-    pub fn positions(&self, shape: &Shape, frame: f64, reading: &Reading) -> Option<Vec<[Complex; 2]>> {
+impl DesignFitness for BodyFitness<'_> {
+    fn genes(&self) -> &Genes<'_> {
+        &self.genes
+    }
+
+    fn positions_per_evaluation(&self) -> u64 {
+        let n = self.problem().task().len();
+        let each = if self.clocks.is_empty() { SAMPLES + n } else { n * self.clocks.len() };
+        (2 * each * self.genes.spaces.len()) as u64
+    }
+
+    fn read(&self, genes: &[f64]) -> Reading {
+        let compared = if self.clocks.is_empty() { self.problem().task().len() * SAMPLES / 8 } else { 0 };
+        computed(self.positions_per_evaluation() as usize + compared);
+        let mut best = nothing();
+        for (side, space) in &self.genes.spaces {
+            let x = space.from_free(genes);
+            let Some(shape) = space.shape(&x) else { continue };
+            if self.clocks.is_empty() {
+                self.free_readings(*side, &shape, space.offset(&x), &mut best);
+            } else {
+                self.timed_readings(*side, &shape, space.offset(&x), &mut best);
+            }
+        }
+        best
+    }
+
+    fn positions(&self, shape: &Shape, frame: f64, reading: &Reading) -> Option<Positions> {
         let kernel = shape.kernel(reading.setting.assembly);
         let samples = self.samples(&kernel);
-        let reachable = |i: usize| self.on_arc(shape, reading.arc, i);
+        let reachable = |i: usize| is_on_arc(shape, reading.arc, self.wheel[i]);
         let position = |j: usize| {
             let (angle, _) = self.nearest(j, (&kernel, &samples), frame, &reachable)?;
             let at = kernel.at(angle.cos(), angle.sin());
             let coupler = (point(at.follower_pin) - point(at.crank_pin)) / shape.coupler;
             Some([Complex::from_polar(1.0, angle), coupler])
         };
-        (0..self.problem.task().len()).map(position).collect()
+        (0..self.problem().task().len()).map(position).collect()
     }
 }
 
 impl PopulationProblem for BodyFitness<'_> {
     fn bounds(&self) -> &[(f64, f64)] {
-        &self.genes
+        self.genes.bounds()
     }
 
     fn evaluate(&self, x: &[f64]) -> Fitness {
@@ -311,7 +279,7 @@ impl PopulationProblem for BodyFitness<'_> {
     fn cost_hint_ns(&self) -> f64 {
         // About 30 ns a position with its angle; free timing also compares every target with every sample.
         let positions = 30.0 * self.positions_per_evaluation() as f64 + 300.0;
-        let compared = if self.clocks.is_empty() { 20 * SAMPLES * self.problem.task().len() } else { 0 };
+        let compared = if self.clocks.is_empty() { 20 * SAMPLES * self.problem().task().len() } else { 0 };
         positions + compared as f64
     }
 }

@@ -11,18 +11,20 @@
 //! (see [`crate::numbers::optimise::population`]). Nothing here allocates, except for targets of thousands
 //! of points.
 
-use super::design_space::{DesignSpace, Shape};
-use super::rows::{Motion, Requirements, nearest_type};
+use super::design_space::Shape;
+use super::genes::{DesignFitness, Genes, arcs, is_on_arc};
+use super::rows::{Motion, nearest_type};
+use super::torus::Positions;
 use crate::mechanism::effort::{POINTS_AT_ONCE, computed};
 use crate::mechanism::four_bar::mobility::{linkage_type, wrapped};
 use crate::mechanism::four_bar::position::Kernel;
-use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType, cross};
+use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType};
 use crate::numbers::arithmetic::complex_lanes::{Column, column};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 use crate::numbers::optimise::population::{Fitness, PopulationProblem};
 use crate::task::spec::Objective;
-use crate::task::{AngleOffset, Problem, Setting, Timing};
+use crate::task::{Problem, Setting, Timing};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -40,10 +42,7 @@ struct Columns {
 /// The fitness of a path task.
 #[derive(Clone, Debug)]
 pub struct PathFitness<'a> {
-    problem: &'a Problem,
-    spaces: Vec<(CouplerSide, DesignSpace)>,
-    requirements: Requirements,
-    genes: Vec<(f64, f64)>,
+    genes: Genes<'a>,
     targets: Columns,
     /// The unit of the largest deviation, if that is minimised: the least tolerance, or 1.
     deviation: Option<f64>,
@@ -51,8 +50,6 @@ pub struct PathFitness<'a> {
     clocks: Vec<(f64, Column)>,
     /// The directions of the sampled crank angles of free timing (the *wheel*).
     wheel: Column,
-    /// The least and the greatest prescribed angle as written, radians.
-    span: (f64, f64),
 }
 
 /// An evaluation of a design (a *reading*): its fitness and the discrete setting that attains it.
@@ -88,91 +85,34 @@ impl<'a> PathFitness<'a> {
         let task = problem.task();
         let mut targets = Columns { point: column(task.points()), weight: task.weights().to_vec() };
         targets.weight.resize(task.len().next_multiple_of(LANES), 0.0);
-        let mut clocks = Vec::new();
-        let mut span = (0.0, 0.0);
-        if let Timing::Prescribed { crank_angles, .. } = task.timing() {
-            span = crank_angles
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &a| (l.min(a), h.max(a)));
-            if task.closed() {
-                span.1 = span.1.max(span.0 + TAU);
+        let clocks = match task.timing() {
+            Timing::Free => Vec::new(),
+            Timing::Prescribed { .. } => {
+                let clock = |&direction: &f64| (direction, column(&problem.phases(direction)));
+                problem.directions().iter().map(clock).collect()
             }
-            let clock = |&direction: &f64| (direction, column(&problem.phases(direction)));
-            clocks = problem.directions().iter().map(clock).collect();
-        }
+        };
         let wheel: Vec<Complex> = (0..CURVE_SAMPLES)
             .map(|i| Complex::from_polar(1.0, TAU * i as f64 / CURVE_SAMPLES as f64))
             .collect();
-        let spaces: Vec<_> = problem.sides().iter().map(|&side| (side, problem.space(side))).collect();
         PathFitness {
-            requirements: problem.requirements(&spaces[0].1),
-            genes: spaces[0].1.free_box(),
-            problem,
-            spaces,
+            genes: Genes::new(problem),
             targets,
             deviation: (problem.spec().solve.objective == Objective::MaxDeviation)
                 .then(|| task.tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min))),
             clocks,
             wheel: column(&wheel),
-            span,
         }
     }
 
     /// Returns the problem.
-    pub fn problem(&self) -> &'a Problem {
-        self.problem
+    fn problem(&self) -> &'a Problem {
+        self.genes.problem()
     }
 
-    /// Returns the design space of a side of the coupler point.
-    pub fn space(&self, side: CouplerSide) -> &DesignSpace {
-        self.spaces.iter().find(|(s, _)| *s == side).map_or(&self.spaces[0].1, |(_, space)| space)
-    }
-
-    /// Returns the number of positions of the linkage that one evaluation computes.
-    pub fn positions_per_evaluation(&self) -> u64 {
-        let each = if self.clocks.is_empty() {
-            CURVE_SAMPLES
-        } else {
-            self.problem.task().len() * self.clocks.len()
-        };
-        (2 * each * self.spaces.len()) as u64
-    }
-
-    /// Returns the best reading of a design's free numbers.
-    pub fn read(&self, genes: &[f64]) -> Reading {
-        // With free timing every point is compared with every sample: for eight of them about as much work as a
-        // position.
-        let free = if self.clocks.is_empty() { self.problem.task().len() * CURVE_SAMPLES / 8 } else { 0 };
-        computed(self.positions_per_evaluation() as usize + free);
-        let mut best = nothing();
-        let mut offer = |reading: Reading| best.offer(reading);
-        for (side, space) in &self.spaces {
-            let x = space.from_free(genes);
-            let Some(shape) = space.shape(&x) else { continue };
-            if self.clocks.is_empty() {
-                self.free_readings(*side, &shape, &mut offer);
-            } else {
-                self.timed_readings(*side, space.offset(&x), &shape, &mut offer);
-            }
-        }
-        best
-    }
-
-    /// Returns whether a sampled crank angle lies on the input arc on one side of the ground line (0: on either).
-    fn on_arc(&self, ground: Complex, arc: f64, sample: usize) -> bool {
-        let crank = Complex::new(self.wheel[0][sample], self.wheel[1][sample]);
-        arc == 0.0 || cross(ground, crank) * arc > 0.0
-    }
-
-    /// Returns the angle added to every prescribed one: `offset` if it is free.
-    fn angle_offset(&self, offset: f64, shape: &Shape) -> f64 {
-        match self.problem.task().timing() {
-            Timing::Prescribed { offset: AngleOffset::Free, .. } => offset,
-            Timing::Prescribed { offset: AngleOffset::Ground, .. } => {
-                (shape.follower_pivot - shape.crank_pivot).arg()
-            }
-            _ => 0.0,
-        }
+    /// Returns whether a sampled crank angle lies on an arc ([`arcs`]).
+    fn is_on_arc(&self, shape: &Shape, arc: f64, sample: usize) -> bool {
+        is_on_arc(shape, arc, Complex::new(self.wheel[0][sample], self.wheel[1][sample]))
     }
 
     /// Returns the reading of a shape with prescribed timing, in one direction (by its index among the allowed ones)
@@ -186,20 +126,14 @@ impl<'a> PathFitness<'a> {
         assembly: AssemblyMode,
     ) -> Option<Reading> {
         let (direction, phases) = self.clocks.get(direction)?;
-        let offset = self.angle_offset(offset, shape);
+        let offset = self.genes.angle_offset(offset, shape);
         let turn = Complex::from_polar(1.0, offset);
         let sums = timed_sums(&shape.kernel(AssemblyMode::Plus), turn, phases, &self.targets, self.deviation);
-        let aim = nearest_type(shape.links(), self.problem.types());
-        let motion = self.timed_motion(*direction, offset, assembly);
-        let lack = self.requirements.lack(aim, shape, &motion, None);
+        let aim = nearest_type(shape.links(), self.problem().types());
+        let motion = self.genes.timed_motion(*direction, offset, assembly);
+        let lack = self.genes.requirements.lack(aim, shape, &motion, None);
         let setting = Setting { aim, assembly, direction: *direction, side };
         Some(sums.reading(setting, lack))
-    }
-
-    /// Returns the motion through the prescribed angles in a direction.
-    fn timed_motion(&self, direction: f64, offset: f64, assembly: AssemblyMode) -> Motion<'static> {
-        let ends = (direction * self.span.0 + offset, direction * self.span.1 + offset);
-        Motion::Stretch(ends.0.min(ends.1), ends.0.max(ends.1), assembly)
     }
 
     /// Returns the opening of the loop, summed over the points, in one direction: 0 if it closes at all of them. `turn`
@@ -225,22 +159,22 @@ impl<'a> PathFitness<'a> {
         motion: &Motion<'_>,
         shared: &mut Option<f64>,
     ) -> f64 {
-        if self.requirements.depend_on_motion() {
-            return self.requirements.lack(aim, shape, motion, None);
+        if self.genes.requirements.depend_on_motion() {
+            return self.genes.requirements.lack(aim, shape, motion, None);
         }
-        *shared.get_or_insert_with(|| self.requirements.lack(aim, shape, motion, None))
+        *shared.get_or_insert_with(|| self.genes.requirements.lack(aim, shape, motion, None))
     }
 
     fn timed_readings(&self, side: CouplerSide, offset: f64, shape: &Shape, offer: &mut dyn FnMut(Reading)) {
         let kernel = shape.kernel(AssemblyMode::Plus);
-        let offset = self.angle_offset(offset, shape);
+        let offset = self.genes.angle_offset(offset, shape);
         let turn = Complex::from_polar(1.0, offset);
-        let aim = nearest_type(shape.links(), self.problem.types());
+        let aim = nearest_type(shape.links(), self.problem().types());
         let mut shared = None;
         for (direction, phases) in &self.clocks {
             let sums = timed_sums(&kernel, turn, phases, &self.targets, self.deviation);
             for assembly in [AssemblyMode::Plus, AssemblyMode::Minus] {
-                let motion = self.timed_motion(*direction, offset, assembly);
+                let motion = self.genes.timed_motion(*direction, offset, assembly);
                 let lack = self.lack(aim, shape, &motion, &mut shared);
                 offer(sums.reading(Setting { aim, assembly, direction: *direction, side }, lack));
             }
@@ -250,20 +184,16 @@ impl<'a> PathFitness<'a> {
     fn free_readings(&self, side: CouplerSide, shape: &Shape, offer: &mut dyn FnMut(Reading)) {
         let kernel = shape.kernel(AssemblyMode::Plus);
         let links = shape.links();
-        let aim = nearest_type(links, self.problem.types());
+        let aim = nearest_type(links, self.problem().types());
         let own = linkage_type(links);
         let curve = Sampled::of(&kernel, &self.wheel);
-        // A Grashof linkage with a rocking input has a circuit on either side of its ground line.
-        let two_arcs = matches!(own, Some(LinkageType::RockerCrank | LinkageType::DoubleRocker));
-        let sides: &[f64] = if two_arcs { &[1.0, -1.0] } else { &[0.0] };
-        let ground = shape.follower_pivot - shape.crank_pivot;
         let mut shared = None;
         for assembly in [AssemblyMode::Plus, AssemblyMode::Minus] {
-            for &arc in sides {
-                let reachable = |i: usize| self.on_arc(ground, arc, i);
+            for &arc in arcs(own) {
+                let reachable = |i: usize| self.is_on_arc(shape, arc, i);
                 let (mut cost, mut open) = (0.0, false);
                 let mut course = Course::default();
-                let points = self.problem.task().points();
+                let points = self.problem().task().points();
                 // In parallel if there are many, and read in the order of the points: the number of threads changes no
                 // digit.
                 let nearest = |target: &Complex| curve.nearest(assembly, *target, &reachable);
@@ -274,7 +204,7 @@ impl<'a> PathFitness<'a> {
                         Some((angle, sq)) => {
                             let part = self.targets.weight[j] * sq;
                             cost = if self.deviation.is_some() { f64::max(cost, part) } else { cost + part };
-                            if j + 1 < self.problem.task().len() || !self.problem.task().repeats_first() {
+                            if j + 1 < self.problem().task().len() || !self.problem().task().repeats_first() {
                                 course.pass(angle);
                             }
                         }
@@ -285,8 +215,9 @@ impl<'a> PathFitness<'a> {
                     }
                 }
                 let turns = own.is_some_and(LinkageType::input_turns_fully);
-                let (direction, disorder, motion) = course.judged(turns, self.problem.directions(), assembly);
-                let disorder = if self.problem.order_required() { disorder } else { 0.0 };
+                let (direction, disorder, motion) =
+                    course.judged(turns, self.problem().directions(), assembly);
+                let disorder = if self.problem().order_required() { disorder } else { 0.0 };
                 let lack = self.lack(aim, shape, &motion, &mut shared);
                 if let Some(unit) = self.deviation {
                     cost = cost.sqrt() / unit;
@@ -300,23 +231,54 @@ impl<'a> PathFitness<'a> {
             }
         }
     }
+}
 
-    /// Returns the positions (e_j, u_j) of the points for free timing, as in the reading; `None` if a point finds no
-    /// position.
-    pub fn positions(&self, shape: &Shape, reading: &Reading) -> Option<Vec<[Complex; 2]>> {
+impl DesignFitness for PathFitness<'_> {
+    fn genes(&self) -> &Genes<'_> {
+        &self.genes
+    }
+
+    fn positions_per_evaluation(&self) -> u64 {
+        let each = if self.clocks.is_empty() {
+            CURVE_SAMPLES
+        } else {
+            self.problem().task().len() * self.clocks.len()
+        };
+        (2 * each * self.genes.spaces.len()) as u64
+    }
+
+    fn read(&self, genes: &[f64]) -> Reading {
+        // With free timing every point is compared with every sample: for eight of them about as much work as a
+        // position.
+        let free = if self.clocks.is_empty() { self.problem().task().len() * CURVE_SAMPLES / 8 } else { 0 };
+        computed(self.positions_per_evaluation() as usize + free);
+        let mut best = nothing();
+        let mut offer = |reading: Reading| best.offer(reading);
+        for (side, space) in &self.genes.spaces {
+            let x = space.from_free(genes);
+            let Some(shape) = space.shape(&x) else { continue };
+            if self.clocks.is_empty() {
+                self.free_readings(*side, &shape, &mut offer);
+            } else {
+                self.timed_readings(*side, space.offset(&x), &shape, &mut offer);
+            }
+        }
+        best
+    }
+
+    fn positions(&self, shape: &Shape, _: f64, reading: &Reading) -> Option<Positions> {
         let assembly = reading.setting.assembly;
-        let ground = shape.follower_pivot - shape.crank_pivot;
         let linkage = shape.linkage(assembly).ok()?;
         let kernel = shape.kernel(AssemblyMode::Plus);
         let curve = Sampled::of(&kernel, &self.wheel);
-        self.problem
+        self.problem()
             .task()
             .points()
             .par_iter()
             .with_min_len(POINTS_AT_ONCE)
             .map(|target| {
                 let (angle, _) =
-                    curve.nearest(assembly, *target, &|i| self.on_arc(ground, reading.arc, i))?;
+                    curve.nearest(assembly, *target, &|i| self.is_on_arc(shape, reading.arc, i))?;
                 let joints = linkage.position_with(angle, assembly).joints()?;
                 let coupler = (joints.follower_pin - joints.crank_pin) / shape.coupler;
                 Some([Complex::from_polar(1.0, angle), coupler])
@@ -330,7 +292,7 @@ const MANY: usize = 4096;
 
 impl PopulationProblem for PathFitness<'_> {
     fn bounds(&self) -> &[(f64, f64)] {
-        &self.genes
+        self.genes.bounds()
     }
 
     fn evaluate(&self, x: &[f64]) -> Fitness {
@@ -342,7 +304,7 @@ impl PopulationProblem for PathFitness<'_> {
         // sample.
         let positions = 3.0 * self.positions_per_evaluation() as f64 + 300.0;
         if self.clocks.is_empty() {
-            positions + 2.0 * (CURVE_SAMPLES * self.problem.task().len()) as f64
+            positions + 2.0 * (CURVE_SAMPLES * self.problem().task().len()) as f64
         } else {
             positions
         }

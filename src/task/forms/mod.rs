@@ -2,9 +2,11 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | [`body_fitness`] | fitness of a population search where angles of a link are wanted: of a body in a motion, of the follower in a function |
 //! | [`design_space`] | the design vector and its coordinates; only this file knows the meaning of each component |
 //! | [`fitness`] | fitness of a population search in the physical parameters: the design's free numbers in, violation and cost out |
-//! | [`fits`] | the least-squares fit that suits a start: of a path or of a motion, with prescribed or with free timing |
+//! | [`fits`] | the least-squares fit that suits a start: of a path, of a motion or of a function, with prescribed or with free timing |
+//! | [`genes`] | the free numbers of a design in which the population searches move, and what is the same of every fitness of them |
 //! | [`linear_fit`] | the linear part of a path fit, for starts: given the shape ratios and the positions, the pivots, the size and the coupler point follow from linear least squares |
 //! | [`precision`] | exact problems: paths of nine precision points with free timing |
 //! | [`projection`] | variable projection for prescribed timing (the reduced form): the linear parameters are solved for inside |
@@ -18,6 +20,7 @@ pub mod body_fitness;
 pub mod design_space;
 pub mod fitness;
 pub mod fits;
+pub mod genes;
 pub mod linear_fit;
 pub mod precision;
 pub mod projection;
