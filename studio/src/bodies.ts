@@ -1,7 +1,7 @@
 // The body of a motion on the board: a frame at each pose with a handle that turns it, its outline where there is one, where
 // the linkage takes it, and the body that moves along with the coupler. The long arm of a frame is the body's x axis.
 
-import { bodyPoses } from "../../src/report/html/player/body.mjs";
+import { bodyPoses, CORNERS } from "../../src/report/html/player/body.mjs";
 import { pathThrough, px, setAll, shape } from "../../src/report/html/player/svg.mjs";
 import type { Board } from "./board";
 import type { Point, Task } from "./messages";
@@ -11,17 +11,6 @@ const MANY = 12;
 /** Pixels of a frame's long arm: a part of the poses' box, at least and at most; and from its tip to its handle. */
 const [PART, LEAST, MOST, BEYOND, FURTHEST] = [0.11, 28, 46, 15, 90];
 const DEGREES = 180 / Math.PI;
-/** The corners of a frame of length 1, in the body's axes: as in body.mjs. */
-const CORNERS: Point[] = [
-  [-0.07, -0.07],
-  [0.76, -0.07],
-  [1, 0],
-  [0.76, 0.07],
-  [0.07, 0.07],
-  [0.07, 0.56],
-  [-0.07, 0.56],
-];
-
 /** A body's lines at a place in pixels, turned by an angle; `scale`: pixels of a length of 1. */
 function placed(lines: Point[][], [x, y]: Point, deg: number, scale: number): string {
   const [cos, sin] = [Math.cos(deg / DEGREES) * scale, Math.sin(deg / DEGREES) * scale];
@@ -93,7 +82,7 @@ export class Bodies {
       const name = isChosen ? " chosen" : "";
       if (outline.length > 0)
         frames.push(shape("path", { class: `pose-outline${name}`, d: placed(outline, spot, deg, looking.scale) }));
-      frames.push(shape("path", { class: `pose-frame${name}`, d: placed([CORNERS], spot, deg, this.long) }));
+      frames.push(shape("path", { class: `pose-frame${name}`, d: placed([CORNERS as Point[]], spot, deg, this.long) }));
       if (!few && !isChosen) return;
       const along = (far: number): Point => [
         spot[0] + far * Math.cos(deg / DEGREES),
@@ -160,7 +149,7 @@ export class Bodies {
     const outline = task.body?.outline as Point[][] | undefined;
     return outline?.length
       ? placed(outline, spot, deg, this.board.looking.scale)
-      : placed([CORNERS], spot, deg, this.long);
+      : placed([CORNERS as Point[]], spot, deg, this.long);
   }
 
   /** The body where the linkage takes it, at each pose. */

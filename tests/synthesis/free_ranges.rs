@@ -1,7 +1,7 @@
 //! Functions whose ranges are free: derivatives, seven pairs exactly, the bounds of the ranges, and what a record may say.
 
 use crate::common::parse;
-use crate::functions::{assert_true, follower_angle, generated, problem};
+use crate::functions::{OFFSETS, assert_true, follower_angle, generated, movable, problem, steps};
 use crate::motion::{ALONE, assert_mostly_small, solved, wrapped};
 use linkwright::internals::judge::assess::assess;
 use linkwright::internals::judge::rank::is_exact;
@@ -13,10 +13,8 @@ use linkwright::internals::report::csv::candidates_csv;
 use linkwright::internals::report::html::report_html;
 use linkwright::internals::report::table::candidates_table;
 use linkwright::internals::synthesis::nearest::nearest_positions;
-use linkwright::internals::task::Setting;
-use linkwright::internals::task::forms::design_space::Shape;
 use linkwright::internals::task::forms::timed::RangedFit;
-use linkwright::{CouplerSide, Problem, load_problem};
+use linkwright::{Problem, load_problem};
 use std::path::Path;
 
 const FREE: &str = "input_range_deg = [10, 360]\noutput_range_deg = [5, 180]\n";
@@ -24,43 +22,19 @@ const FREE: &str = "input_range_deg = [10, 360]\noutput_range_deg = [5, 180]\n";
 #[test]
 fn derivatives_by_the_scales_agree_with_central_differences_under_requirements_of_the_motion() {
     let draws = &mut stream(96, 0);
-    for (case, offsets) in [("free", "free"), ("ground", "free"), ("free", "ground"), ("ground", "ground")]
-        .into_iter()
-        .enumerate()
-    {
+    for (case, offsets) in OFFSETS.into_iter().enumerate() {
         let mut errors = Vec::new();
         for _ in 0..30 {
-            let of = generated(draws, 7);
-            let (input, output) = offsets;
-            let base = |offset: &str, all: &[f64]| if offset == "ground" { 0.0 } else { all[0] };
-            let inputs: Vec<f64> = of.crank.iter().map(|a| a - base(input, &of.crank)).collect();
-            let outputs: Vec<f64> = of.follower.iter().map(|a| a - base(output, &of.follower)).collect();
-            let lines = format!(
-                "{FREE}input_offset = \"{input}\"\noutput_offset = \"{output}\"\nsense = \"same\"\n[design]\n\
-                 A = [[-0.5, 0.5], [-0.5, 0.5]]\nB = [[0.5, 1.5], [-0.5, 0.5]]\n[require]\n\
-                 transmission_deg_min = 30\ntransmission_over = \"used\"\nfootprint_in = [-1, -1, 2, 2]\n\
-                 extent_max = 3\n"
-            );
-            let problem = Problem::new(problem(&inputs, &outputs, &lines)).expect("a problem");
-            let setting = Setting {
-                aim: None,
-                assembly: of.linkage.assembly(),
-                direction: 1.0,
-                side: CouplerSide::Plus,
-            };
-            let space = problem.space(CouplerSide::Plus);
-            let turn = if input == "free" { of.crank[0] } else { 0.0 };
-            let design = space.design(&Shape::from(&of.linkage), turn);
+            let require = "transmission_deg_min = 30\ntransmission_over = \"used\"\nfootprint_in = [-1, -1, 2, 2]\n\
+                           extent_max = 3\n";
+            let (problem, setting, design) = movable(draws, offsets, FREE, require);
             let fit = RangedFit::new(&problem, setting).expect("it is a function");
             // Shorter ranges than the linkage closes over.
             let mut x = fit.unknowns(&design, [0.9, 1.0]);
             x[2] += 0.01;
             x[3] += 0.02;
             x[12] = 1.2;
-            let mut steps = [1e-6; 13];
-            steps[9] = if input == "free" { 1e-6 } else { 0.0 };
-            steps[10] = if output == "free" { 1e-6 } else { 0.0 };
-            (steps[7], steps[8]) = (0.0, 0.0);
+            let steps: [f64; 13] = steps(offsets);
             // Residuals are in degrees.
             let error = derivative_error(&fit, &x, &Vec::new(), &steps, 1e-6);
             errors.extend(error.map(|error| error / 60.0));

@@ -10,7 +10,7 @@ use linkwright::internals::judge::verify::verify;
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
 use linkwright::internals::numbers::optimise::levenberg_marquardt::derivative_error;
 use linkwright::internals::synthesis::nearest::nearest_positions;
-use linkwright::internals::task::forms::design_space::Shape;
+use linkwright::internals::task::forms::design_space::{Design, Shape};
 use linkwright::internals::task::forms::timed::FunctionFit;
 use linkwright::internals::task::{Sense, Setting};
 use linkwright::spec::{Objective, ProblemSpec};
@@ -160,44 +160,56 @@ fn functions_of_the_textbooks_are_as_good_as_is_known_from_every_seed() {
     }
 }
 
+/// The references of inputs and outputs, in every mixture.
+pub(crate) const OFFSETS: [(&str, &str); 4] =
+    [("free", "free"), ("ground", "free"), ("free", "ground"), ("ground", "ground")];
+
+/// The problem of seven pairs of a random linkage that count from `offsets`, with further lines of the function and of what is
+/// required, and the linkage as its design. Its pivots may move, so that the ground line turns.
+pub(crate) fn movable(
+    draws: &mut Stream,
+    (input, output): (&str, &str),
+    lines: &str,
+    require: &str,
+) -> (Problem, Setting, Design) {
+    let of = generated(draws, 7);
+    let base = |offset: &str, all: &[f64]| if offset == "ground" { 0.0 } else { all[0] };
+    let inputs: Vec<f64> = of.crank.iter().map(|a| a - base(input, &of.crank)).collect();
+    let outputs: Vec<f64> = of.follower.iter().map(|a| a - base(output, &of.follower)).collect();
+    let lines = format!(
+        "{lines}input_offset = \"{input}\"\noutput_offset = \"{output}\"\nsense = \"same\"\n[design]\n\
+         A = [[-0.5, 0.5], [-0.5, 0.5]]\nB = [[0.5, 1.5], [-0.5, 0.5]]\n[require]\n{require}"
+    );
+    let problem = Problem::new(problem(&inputs, &outputs, &lines)).expect("a problem");
+    let side = CouplerSide::Plus;
+    let setting = Setting { aim: None, assembly: of.linkage.assembly(), direction: 1.0, side };
+    let turn = if input == "free" { of.crank[0] } else { 0.0 };
+    let design = problem.space(side).design(&Shape::from(&of.linkage), turn);
+    (problem, setting, design)
+}
+
+/// The steps of central differences by the unknowns of a function: none by what the fit does not move.
+pub(crate) fn steps<const N: usize>((input, output): (&str, &str)) -> [f64; N] {
+    let mut steps = [1e-6; N];
+    (steps[7], steps[8]) = (0.0, 0.0);
+    steps[9] = if input == "free" { 1e-6 } else { 0.0 };
+    steps[10] = if output == "free" { 1e-6 } else { 0.0 };
+    steps
+}
+
 #[test]
 fn derivatives_of_a_function_agree_with_central_differences() {
     let draws = &mut stream(91, 0);
-    for (case, offsets) in [("free", "free"), ("ground", "free"), ("free", "ground"), ("ground", "ground")]
-        .into_iter()
-        .enumerate()
-    {
+    for (case, offsets) in OFFSETS.into_iter().enumerate() {
         let mut errors = Vec::new();
         for _ in 0..30 {
-            let of = generated(draws, 7);
-            let (input, output) = offsets;
-            let base = |offset: &str, all: &[f64]| if offset == "ground" { 0.0 } else { all[0] };
-            let inputs: Vec<f64> = of.crank.iter().map(|a| a - base(input, &of.crank)).collect();
-            let outputs: Vec<f64> = of.follower.iter().map(|a| a - base(output, &of.follower)).collect();
-            // Pivots that may move, so that the ground line turns.
-            let lines = format!(
-                "input_offset = \"{input}\"\noutput_offset = \"{output}\"\nsense = \"same\"\n[design]\n\
-                 A = [[-0.5, 0.5], [-0.5, 0.5]]\nB = [[0.5, 1.5], [-0.5, 0.5]]\n[require]\ntransmission_deg_min = 30\n\
-                 type = [\"crank-rocker\"]\n"
-            );
-            let problem = Problem::new(problem(&inputs, &outputs, &lines)).expect("a problem");
-            let setting = Setting {
-                aim: None,
-                assembly: of.linkage.assembly(),
-                direction: 1.0,
-                side: CouplerSide::Plus,
-            };
-            let space = problem.space(CouplerSide::Plus);
-            let turn = if input == "free" { of.crank[0] } else { 0.0 };
-            let design = space.design(&Shape::from(&of.linkage), turn);
+            let require = "transmission_deg_min = 30\ntype = [\"crank-rocker\"]\n";
+            let (problem, setting, design) = movable(draws, offsets, "", require);
             let fit = FunctionFit::new(&problem, setting).expect("it is a function");
             let mut x = fit.unknowns(&design, [1.0; 2]);
             x[2] += 0.01;
             x[3] += 0.02;
-            let mut steps = [1e-6; 11];
-            steps[9] = if input == "free" { 1e-6 } else { 0.0 };
-            steps[10] = if output == "free" { 1e-6 } else { 0.0 };
-            (steps[7], steps[8]) = (0.0, 0.0);
+            let steps: [f64; 11] = steps(offsets);
             // Residuals are in degrees.
             let error = derivative_error(&fit, &x, &Vec::new(), &steps, 1e-6);
             errors.extend(error.map(|error| error / 60.0));

@@ -1,13 +1,15 @@
 //! The distances of the fixed pivots from their lines or points.
 
 use super::{Finding, Judged};
+use crate::mechanism::Complex;
+use crate::task::pivot_on::Locus;
 
 /// The greater of both distances.
 pub(super) fn judged(judged: &Judged<'_>) -> Option<Finding> {
     let pivot_on = judged.require().pivot_on.as_ref()?;
     let linkage = &judged.candidate.linkage;
     let pivots = [linkage.crank_pivot(), linkage.follower_pivot()];
-    let distance = |(pivot, locus): (crate::mechanism::Complex, Option<&crate::task::pivot_on::Locus>)| {
+    let distance = |(pivot, locus): (Complex, Option<&Locus>)| {
         let points = locus?.0.as_slice();
         let [x0, y0] = *points.first()?;
         let (x, y) = (pivot.re - x0, pivot.im - y0);

@@ -9,7 +9,7 @@ import { element, pathThrough, px, setAll, shape } from "./svg.mjs";
 const STRONG = 12;
 const DEGREES = 180 / Math.PI;
 /** The corners of a frame of length 1, in the body's axes: as in bodies.rs, for the drawings that stand still. */
-const CORNERS = [
+export const CORNERS = [
   [-0.07, -0.07],
   [0.76, -0.07],
   [1, 0],
