@@ -22,6 +22,15 @@ async function saved(page, act) {
   return { name: download.suggestedFilename(), text: readFileSync(await download.path(), "utf8") };
 }
 
+/** At its next load the page begins with nothing remembered: what it keeps until it goes is cleared then. */
+const forgetful = (page) =>
+  page.addInitScript(() => {
+    if (window.name) return;
+    window.name = "cleared";
+    sessionStorage.clear();
+    localStorage.clear();
+  });
+
 /** The numbers of the linkage that the page saves, to what a search changes of one that it has found again. */
 const linkage = async (page) => {
   await tab(page, "build");
@@ -43,10 +52,7 @@ test("what is chosen stays chosen while candidates come, go and change places", 
       socket.send(JSON.stringify({ ...answer, candidates: candidates.slice(0, most) }));
     });
   });
-  await page.evaluate(() => {
-    sessionStorage.clear();
-    localStorage.clear();
-  });
+  await forgetful(page);
   await page.reload();
   await doing(page, "done");
   const again = async (ratio) => {
@@ -368,12 +374,7 @@ test("a tab that is not served is told why; a beginning that did not come is ask
   await other.close();
   // A busy studio gives no beginning: a reload gives it. What is kept is cleared when the next page begins, after the last
   // words of the one before.
-  await page.addInitScript(() => {
-    if (window.name) return;
-    window.name = "cleared";
-    sessionStorage.clear();
-    localStorage.clear();
-  });
+  await forgetful(page);
   await page.route("**/beginning.json", (route) => route.fulfill({ status: 429, body: "too many requests\n" }), {
     times: 1,
   });
