@@ -136,10 +136,11 @@ export async function drawer(page, name) {
   if (!(await page.locator(`#${name}`).evaluate((one) => one.open))) await page.locator(`#${name} > summary`).click();
 }
 
-/** Loads an example of the gallery by its number. */
+/** Loads an example of the gallery by its number. The examples come with the second script: the first click waits for it. */
 export async function example(page, number) {
   if (await page.locator("#gallery").isHidden()) await button(page, "Examples").click();
   await page.locator("#gallery .example").nth(number).click();
+  await page.waitForFunction(() => globalThis.kit);
 }
 
 /** The problem file that the page saves. */
