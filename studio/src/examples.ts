@@ -10,7 +10,15 @@ export interface Example {
 }
 
 /** Examples that come with the second script: motions and functions. */
-export const MORE = ["Hood hinge", "Sofa bed", "Drop leaf", "Bulldozer blade", "Logarithm", "Dial by pairs"];
+export const MORE = [
+  "Hood hinge",
+  "Sofa bed",
+  "Drop leaf",
+  "Bulldozer blade",
+  "Excavator bucket",
+  "Logarithm",
+  "Dial by pairs",
+];
 
 /** The step of a foot, flat on the ground and lifted on the way back, under hips that stand above it. */
 const WALKING: Task = {

@@ -137,11 +137,32 @@ const DIAL: Task = {
   seed: 1,
 };
 
+/** The bucket of an excavator: the rocker that the cylinder pushes turns by 95 degrees, the bucket by 154, fastest where it
+ * curls into the ground. */
+const BUCKET: Task = {
+  name: "excavator-bucket",
+  source: "made for the studio",
+  points: [
+    [0, 0],
+    [20, 36],
+    [40, 70],
+    [60, 102],
+    [80, 132],
+    [95, 154],
+  ],
+  function: {},
+  closed: false,
+  types: [],
+  transmission_deg_min: 30,
+  seed: 1,
+};
+
 export const sights: Record<string, Task> = {
   "Hood hinge": HOOD,
   "Sofa bed": SOFA,
   "Drop leaf": LEAF,
   "Bulldozer blade": BLADE,
+  "Excavator bucket": BUCKET,
   Logarithm: LOGARITHM,
   "Dial by pairs": DIAL,
 };
