@@ -4,11 +4,13 @@
 //! solution of G comes back as a solution of G, as a rule another one; the loops act on the 1442 classes as one
 //! orbit. A loop leads from G straight to (u D, u* D*), D a random target, jumps by a change of units (the equations
 //! keep their form under delta -> m delta, delta* -> m* delta* with x, y, a, b -> m .., starred alike) to (v D, v*
-//! D*), and goes straight back. The six images of a solution move as one, so that one of them is carried for all.
+//! D*), and goes straight back. The images of a solution move as one, so that one of them is carried for all. Turns of
+//! poses have no unit; they move with the displacements.
 
 use linkwright::internals::numbers::arithmetic::Complex;
 use linkwright::internals::numbers::nine_point::classes::first_of_class;
 use linkwright::internals::numbers::nine_point::correction::correct;
+use linkwright::internals::numbers::nine_point::start::CLASSES;
 use linkwright::internals::numbers::nine_point::target::{Displacements, STEPS, Solution};
 use linkwright::internals::numbers::nine_point::tracker::{Ending, Parameters, Segment, track};
 use std::sync::atomic::AtomicBool;
@@ -56,17 +58,24 @@ fn ring(uniform: Uniform) -> Complex {
     Complex::from_polar(0.5 + uniform(), std::f64::consts::TAU * uniform())
 }
 
-/// Draws a random complex four-bar and computes eight displacements that it solves.
+/// Draws a random complex four-bar and computes displacements that it solves, `poses` of them with a given turn.
 ///
 /// With random pivots and T_j each pair (delta_j, delta*_j) solves L_1 R_1 = c_1, L_2 R_2 = c_2, where L_2 = L_1 + d,
 /// R_2 = R_1 + d*: a quadratic in L_1.
-fn random_answer(uniform: Uniform) -> (Displacements, Solution) {
+fn random_answer(uniform: Uniform, poses: usize) -> (Displacements, Solution) {
     let [x, y, a, b, x_s, y_s, a_s, b_s] = [(); 8].map(|()| ring(uniform));
-    let rotations: [Complex; STEPS] = [(); STEPS].map(|()| ring(uniform));
+    let mut rotations: [Complex; STEPS] = [(); STEPS].map(|()| ring(uniform));
     let (c_1, c_2) = ((x - a) * (x_s - a_s), (y - b) * (y_s - b_s));
     let mut displacements =
-        Displacements { delta: [Complex::default(); STEPS], starred: [Complex::default(); STEPS] };
-    for (j, &t) in rotations.iter().enumerate() {
+        Displacements { delta: [Complex::default(); STEPS], starred: [Complex::default(); STEPS], poses };
+    let (points, len) = (displacements.points(), displacements.len());
+    for pose in 0..poses {
+        let turn = rotations[points + pose];
+        rotations[len + pose] = turn;
+        displacements.starred[len + pose] = ring(uniform);
+        displacements.delta[len + pose] = turn * displacements.starred[len + pose];
+    }
+    for (j, &t) in rotations.iter().enumerate().take(len) {
         let (d, d_s) = ((y - x) * t - (b - a), (y_s - x_s) / t - (b_s - a_s));
         // c_1 + d* L + d R + d d* = c_2 with R = c_1 / L.
         let (half, product) = ((c_1 + d * d_s - c_2) / (d_s * 2.0), d * c_1 / d_s);
@@ -84,30 +93,27 @@ fn random_answer(uniform: Uniform) -> (Displacements, Solution) {
     (displacements, solution)
 }
 
-/// Returns the displacements in other units: delta -> by delta, delta* -> by_starred delta*.
-fn scaled(of: &Displacements, by: Complex, by_starred: Complex) -> Displacements {
-    Displacements { delta: of.delta.map(|d| d * by), starred: of.starred.map(|d| d * by_starred) }
-}
-
 /// Draws random displacements of moderate size.
-fn random_displacements(uniform: Uniform) -> Displacements {
-    Displacements { delta: [(); STEPS].map(|()| ring(uniform)), starred: [(); STEPS].map(|()| ring(uniform)) }
+fn random_displacements(uniform: Uniform, poses: usize) -> Displacements {
+    let mut draw = || [(); STEPS].map(|()| ring(uniform));
+    Displacements { delta: draw(), starred: draw(), poses }
 }
 
 /// Tracks monodromy loops until a limit is reached.
 ///
-/// The first solution is tracked from the target that its linkage happens to solve to one of moderate size.
-pub fn orbit(uniform: Uniform, limits: &Limits, cancel: &AtomicBool) -> Orbit {
-    let (from, first) = random_answer(uniform);
-    let home = random_displacements(uniform);
+/// The first solution is tracked from the target that its linkage happens to solve to one of moderate size. `poses` of the
+/// places beyond the first are poses.
+pub fn orbit(uniform: Uniform, poses: usize, limits: &Limits, cancel: &AtomicBool) -> Orbit {
+    let (from, first) = random_answer(uniform, poses);
+    let home = random_displacements(uniform, poses);
     let solutions = arrived(&[first], &Segment { from, to: home }, cancel);
     let mut orbit = Orbit { displacements: home, solutions, loops: 0, idle: 0 };
     let stay = Segment { from: home, to: home };
     while orbit.loops < limits.loops && orbit.idle < limits.idle && orbit.solutions.len() < limits.enough {
-        let away = random_displacements(uniform);
+        let away = random_displacements(uniform, poses);
         let [v, v_s] = [(); 2].map(|()| ring(uniform));
         let out = Segment { from: home, to: away };
-        let back = Segment { from: scaled(&away, v, v_s), to: home };
+        let back = Segment { from: away.in_other_units(v, v_s), to: home };
         let there: Vec<Solution> = arrived(&orbit.solutions, &out, cancel)
             .iter()
             .map(|solution| solution.in_other_units(v, v_s))
@@ -124,7 +130,7 @@ pub fn orbit(uniform: Uniform, limits: &Limits, cancel: &AtomicBool) -> Orbit {
         orbit.loops += 1;
         // A loop of few solutions that finds no new one is no sign that all are found.
         let new = orbit.solutions.len() > known;
-        orbit.idle = if new || known < FEW { 0 } else { orbit.idle + 1 };
+        orbit.idle = if new || known < FEW.min(CLASSES[poses] / 2) { 0 } else { orbit.idle + 1 };
     }
     orbit
 }

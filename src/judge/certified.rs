@@ -1,13 +1,12 @@
-//! Certificates of single exact linkages through nine points, and the tolerances by which a linkage passes for one.
+//! Certificates of single exact linkages through points and poses, and the tolerances by which a linkage passes for one.
 
 use super::rank::exact_sum_sq;
 use crate::judge::mechanisms::solution_of;
 use crate::mechanism::FourBar;
-use crate::numbers::nine_point::Target;
 use crate::numbers::nine_point::certificate::{Certificate, certify};
 use crate::record::{Candidate, Certified};
 use crate::task::Problem;
-use crate::task::forms::precision::precision_points;
+use crate::task::forms::precision::{Precise, precise};
 
 /// Returns the sum of squares up to which a candidate passes for one of the exact linkages, and a certificate is tried.
 pub fn nearly_exact(problem: &Problem) -> f64 {
@@ -32,9 +31,9 @@ pub fn same(one: &FourBar, other: &FourBar) -> bool {
     numbers(one).iter().zip(numbers(other)).all(|(x, y)| (x - y).abs() <= reach)
 }
 
-/// Returns the nine points of a problem that has exact answers.
-pub fn target(problem: &Problem) -> Option<Target> {
-    Target::new(precision_points(problem).ok()?).ok()
+/// Returns the points and poses of a problem that has exact answers.
+pub fn target(problem: &Problem) -> Option<Precise> {
+    precise(problem).ok()
 }
 
 /// Returns the certificate that an exact linkage exists near a candidate; `None` if certification fails.
@@ -42,12 +41,14 @@ pub fn target(problem: &Problem) -> Option<Target> {
 /// Its radius bounds the distance of the exact pivots and pins from those of the candidate: the distance from the
 /// candidate to the refined solution, plus the refined solution's own error bound ([`certify`]), plus the rounding in
 /// computing that distance.
-pub fn certified(target: &Target, candidate: &Candidate) -> Option<Certified> {
+pub fn certified(of: &Precise, candidate: &Candidate) -> Option<Certified> {
+    let Precise { target, places } = of;
     let linkage = &candidate.linkage;
     let angles: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-    let given = solution_of(target, linkage, &angles, &candidate.t1_at)?;
+    let given = solution_of(of, linkage, &angles, &candidate.t1_at)?;
     let proof = certify(target, &given).ok().filter(Certificate::is_real)?;
-    let joints = linkage.position_with(*angles.first()?, *candidate.t1_at.first()?).joints()?;
+    let first = places.iter().position(|place| *place == 0)?;
+    let joints = linkage.position_with(*angles.get(first)?, *candidate.t1_at.get(first)?).joints()?;
     let recorded = [linkage.crank_pivot(), linkage.follower_pivot(), joints.crank_pin, joints.follower_pin];
     let refined = proof.refined.grounds.into_iter().chain(proof.refined.pins);
     let apart = recorded.into_iter().zip(refined).map(|(recorded, refined)| {

@@ -1,5 +1,5 @@
-//! Real solutions of the continuation as candidates: of each class the best of its six mechanisms, judged as every
-//! candidate is.
+//! Real solutions of the continuation as candidates: of each class the best of its mechanisms (six through points, two
+//! where there are poses), judged as every candidate is.
 //!
 //! They are ordered better first: accepted, then lighter defects, then fewer requirements unmet, the better worst
 //! transmission angle, the smaller linkage. That is the order of ranks ([`super::rank`]), since exact errors are equal.
@@ -12,21 +12,22 @@ use crate::judge::assess::{assess, assess_on_curve};
 use crate::judge::error::rms;
 use crate::judge::referee::judge;
 use crate::mechanism::{AssemblyMode, FourBar};
-use crate::numbers::nine_point::{Solution, Target};
+use crate::numbers::nine_point::Solution;
 use crate::record::{Candidate, Certified, CurveErrorRecord, ExactForm, ExactLinkage};
 use crate::task::Problem;
+use crate::task::forms::precision::Precise;
 use rayon::prelude::*;
 
-/// A class of real solutions with its six mechanisms judged.
+/// A class of real solutions with its mechanisms judged.
 #[derive(Clone, Debug)]
 pub struct Class {
-    /// The best of the six mechanisms.
+    /// The best of the mechanisms.
     pub best: Candidate,
-    /// Whether one of the six mechanisms stays on one circuit.
+    /// Whether one of the mechanisms stays on one circuit.
     pub one_circuit: bool,
-    /// Whether one of the six passes the points in order.
+    /// Whether one of them passes the points in order.
     pub in_order: bool,
-    /// Whether one of the six has no defect.
+    /// Whether one of them has no defect.
     pub free_of_defects: bool,
     /// The other mechanisms, better first.
     pub others: Vec<ExactForm>,
@@ -44,7 +45,7 @@ pub enum Depth {
 
 /// Returns the classes of real solutions, better first. One that gives no linkage (a link of no length, or one too
 /// large) is left out.
-pub fn classes(problem: &Problem, target: &Target, real: &[Solution], depth: Depth) -> Vec<Class> {
+pub fn classes(problem: &Problem, target: &Precise, real: &[Solution], depth: Depth) -> Vec<Class> {
     let judged: Vec<Option<Class>> =
         real.par_iter().map(|solution| class(problem, target, solution, depth)).collect();
     let mut classes: Vec<Class> = judged.into_iter().flatten().collect();
@@ -53,16 +54,15 @@ pub fn classes(problem: &Problem, target: &Target, real: &[Solution], depth: Dep
     classes
 }
 
-/// Returns a real solution's class; `None` if none of the six is a linkage that passes the points.
-pub fn class(problem: &Problem, target: &Target, solution: &Solution, depth: Depth) -> Option<Class> {
+/// Returns a real solution's class; `None` if none of its mechanisms passes the points.
+pub fn class(problem: &Problem, target: &Precise, solution: &Solution, depth: Depth) -> Option<Class> {
     let list = mechanisms(problem.task(), target, solution);
     let any = |of: fn(&Mechanism) -> bool| list.iter().any(of);
     let mut to_curve = None;
     let mut forms = Vec::with_capacity(list.len());
     for mechanism in list.iter().filter(|m| m.passes) {
         let (crank_deg, t1_at) = positions(problem, mechanism);
-        // All six draw one curve, and on it one circuit through the first point: its distances are known after the
-        // first.
+        // All draw one curve, and on it one circuit through the first point: its distances are known after the first.
         if depth == Depth::Glance {
             to_curve = at_points(problem, &mechanism.linkage, &crank_deg, &t1_at);
         }
@@ -108,7 +108,7 @@ fn at_points(
 
 /// Returns the crank angles, degrees, and the assemblies of a mechanism as a candidate has them.
 fn positions(problem: &Problem, mechanism: &Mechanism) -> (Vec<f64>, Vec<AssemblyMode>) {
-    let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
+    let (angles, assemblies) = (mechanism.crank_angles.clone(), mechanism.assemblies.clone());
     unwrapped(problem, &mechanism.linkage, angles, assemblies)
 }
 
@@ -172,7 +172,7 @@ const NUDGE: f64 = 1e-7;
 /// Computes the class of a linkage from its positions alone; `None` if it does not pass the points.
 pub fn class_at(
     problem: &Problem,
-    target: &Target,
+    target: &Precise,
     (linkage, crank_deg, t1_at): (&FourBar, &[f64], &[AssemblyMode]),
 ) -> Option<Recomputed> {
     let angles: Vec<f64> = crank_deg.iter().map(|deg| deg.to_radians()).collect();

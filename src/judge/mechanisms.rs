@@ -1,10 +1,11 @@
-//! The mechanisms of a real solution: the six ways to build one class, each with its motion through the points.
+//! The mechanisms of a real solution: the ways to build one class, each with its motion through the points and poses.
 //!
-//! A class of solutions is one coupler curve. Three Roberts cognates draw it, and in each of them either of the two
-//! links on the ground can be driven: six mechanisms ([`Solution::cognate`], [`Solution::swapped`]).
+//! A class of solutions through points is one coupler curve. Three Roberts cognates draw it, and in each of them either of
+//! the two links on the ground can be driven: six mechanisms ([`Solution::cognate`], [`Solution::swapped`]). A cognate
+//! turns its coupler differently: where there are poses, the two links make two mechanisms.
 //!
 //! The driven link (x, a) has its pivot at A = P_0 + a and its pin at C_j = P_j + T_j x when the coupler point is at
-//! P_j: the crank angles and the assembly at each point follow directly, without a search.
+//! P_j: the crank angles and the assembly at each target follow directly, without a search.
 //!
 //! The referee ([`crate::judge::referee`]) finds the defects that keep a mechanism from running through its points in
 //! their order. They are defects of the mechanism, not of the curve: if the driven link has to turn back, that of
@@ -12,11 +13,9 @@
 
 use crate::judge::referee::judge;
 use crate::mechanism::{AssemblyMode, Complex, FourBar, cross};
-use crate::numbers::nine_point::target::{STEPS, Solution, Target};
+use crate::numbers::nine_point::target::{STEPS, Solution};
+use crate::task::forms::precision::Precise;
 use crate::task::{Defect, Task};
-
-/// The number of points.
-pub const POINTS: usize = STEPS + 1;
 
 /// The tolerance for passing a point: the coupler point has to come within this part of the mechanism's span, divided
 /// by the sine of the transmission angle there: the loop's closure magnifies rounding by that much.
@@ -28,16 +27,17 @@ const ROUNDED: f64 = 16.0 * f64::EPSILON;
 /// The length, relative to the span, up to which a link counts as having none: its length is rounding.
 pub const NO_LENGTH: f64 = 1e-9;
 
-/// One of the six ways to build a class, in the file's units.
+/// One of the ways to build a class, in the file's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
     /// The linkage; its assembly t1 is that of the first point.
     pub linkage: FourBar,
-    /// The crank angle at each point, radians in (-pi, pi].
-    pub crank_angles: [f64; POINTS],
-    /// The assembly at each point.
-    pub assemblies: [AssemblyMode; POINTS],
-    /// The largest distance of the coupler point from its point at these positions, in the file's units.
+    /// The crank angle at each target, in the task's order, radians in (-pi, pi].
+    pub crank_angles: Vec<f64>,
+    /// The assembly at each target.
+    pub assemblies: Vec<AssemblyMode>,
+    /// The largest distance of the coupler point from its point at these positions, or of the coupler's turn to a pose from
+    /// the one wanted, times the extent of the targets; in the file's units.
     pub miss: f64,
     /// The largest ratio of these distances to the tolerance for passing there.
     pub miss_over_limit: f64,
@@ -89,23 +89,24 @@ impl Real {
 
     /// Builds the mechanism whose crank is the `driven` one of the two links on the ground, with its positions; `None`
     /// if its lengths make no linkage.
-    fn mechanism(&self, task: &Task, target: &Target, driven: usize) -> Option<Mechanism> {
+    fn mechanism(&self, task: &Task, of: &Precise, driven: usize) -> Option<Mechanism> {
+        let Precise { target, places } = of;
         let (x, y) = (self.pins[driven], self.pins[1 - driven]);
         let (a, b) = (self.grounds[driven], self.grounds[1 - driven]);
         let scale = target.scale;
         let pivots = [target.points[0] + a * scale, target.points[0] + b * scale];
         let along = (y - x) / (y - x).norm();
         let links = [(x - a).norm() * scale, (y - x).norm() * scale, (y - b).norm() * scale];
-        let positions: [(f64, AssemblyMode); POINTS] = std::array::from_fn(|j| {
-            let (delta, t) = match j.checked_sub(1) {
+        let position = |place: &usize| {
+            let (delta, t) = match place.checked_sub(1) {
                 None => (Complex::new(0.0, 0.0), Complex::new(1.0, 0.0)),
                 Some(step) => (target.displacements.delta[step], self.rotations[step]),
             };
             let crank_pin = delta + x * t;
             let assembly = AssemblyMode::of(cross(b - crank_pin, (y - x) * t));
             ((crank_pin - a).arg(), assembly)
-        });
-        let (crank_angles, assemblies) = (positions.map(|p| p.0), positions.map(|p| p.1));
+        };
+        let (crank_angles, assemblies): (Vec<f64>, Vec<AssemblyMode>) = places.iter().map(position).unzip();
         let offset = -x * along.conj() * scale;
         let linkage = FourBar::with_coupler_offset(pivots, links, offset, assemblies[0]).ok()?;
         linkage.linkage_type()?;
@@ -114,13 +115,21 @@ impl Real {
             return None;
         }
         let far = pivots.iter().chain(&target.points).map(|z| z.norm()).fold(0.0, f64::max);
+        let points = target.displacements.points();
+        let first = places.iter().position(|place| *place == 0)?;
+        let along = linkage.position_with(crank_angles[first], assemblies[first]).joints();
+        let along = along.map(|joints| joints.follower_pin - joints.crank_pin)?;
         let (mut miss, mut miss_over_limit, mut least_sine) = (0.0_f64, 0.0_f64, f64::INFINITY);
-        for j in 0..POINTS {
+        for (j, place) in places.iter().enumerate() {
             let Some(joints) = linkage.position_with(crank_angles[j], assemblies[j]).joints() else {
                 (miss, miss_over_limit, least_sine) = (f64::INFINITY, f64::INFINITY, 0.0);
                 break;
             };
-            let apart = (joints.coupler_point - target.points[j]).norm();
+            let mut apart = (joints.coupler_point - target.points[*place]).norm();
+            if *place > points {
+                let turn = (joints.follower_pin - joints.crank_pin) / along;
+                apart = apart.max((turn - self.rotations[place - 1]).norm() * scale);
+            }
             let closure = linkage.angle_at_follower_pin(crank_angles[j]).sin();
             miss = miss.max(apart);
             least_sine = least_sine.min(closure);
@@ -142,15 +151,17 @@ impl Real {
     }
 }
 
-/// Returns the six mechanisms of a real solution, cognate by cognate, the first link driven before the second; fewer
-/// if one has a link of no length. `task` is the path of the nine points of `target`.
-pub fn mechanisms(task: &Task, target: &Target, solution: &Solution) -> Vec<Mechanism> {
+/// Returns the mechanisms of a real solution, cognate by cognate, the first link driven before the second; fewer if one has
+/// a link of no length. `task` is that of the points and poses.
+pub fn mechanisms(task: &Task, of: &Precise, solution: &Solution) -> Vec<Mechanism> {
+    let displacements = &of.target.displacements;
+    let cognates = if displacements.poses == 0 { 3 } else { 1 };
     let mut form = *solution;
-    let mut list = Vec::with_capacity(6);
-    for _ in 0..3 {
+    let mut list = Vec::with_capacity(2 * cognates);
+    for _ in 0..cognates {
         let real = Real::of(&form);
-        list.extend((0..2).filter_map(|driven| real.mechanism(task, target, driven)));
-        form = form.cognate(&target.displacements);
+        list.extend((0..2).filter_map(|driven| real.mechanism(task, of, driven)));
+        form = form.cognate(displacements);
     }
     list
 }
@@ -158,15 +169,22 @@ pub fn mechanisms(task: &Task, target: &Target, solution: &Solution) -> Vec<Mech
 /// Computes the solution that belongs to a linkage at its positions, the inverse of building a [`Mechanism`], with
 /// its crank as the first link; `None` if the loop is open at a point.
 pub fn solution_of(
-    target: &Target,
+    of: &Precise,
     linkage: &FourBar,
     crank_angles: &[f64],
     assemblies: &[AssemblyMode],
 ) -> Option<Solution> {
-    if crank_angles.len() != POINTS || assemblies.len() != POINTS {
+    let Precise { target, places } = of;
+    if crank_angles.len() != places.len() || assemblies.len() != places.len() {
         return None;
     }
-    let joints = |j: usize| linkage.position_with(crank_angles[j], assemblies[j]).joints();
+    let mut order = vec![0; places.len()];
+    for (j, place) in places.iter().enumerate() {
+        order[*place] = j;
+    }
+    let at = |place: usize| order[place];
+    let joints =
+        |place: usize| linkage.position_with(crank_angles[at(place)], assemblies[at(place)]).joints();
     let first = joints(0)?;
     let unit = 1.0 / target.scale;
     let relative = |z: Complex| (z - target.points[0]) * unit;
@@ -175,7 +193,10 @@ pub fn solution_of(
     let grounds = [linkage.crank_pivot(), linkage.follower_pivot()].map(relative);
     let along = first.follower_pin - first.crank_pin;
     let mut rotations = [Complex::new(1.0, 0.0); STEPS];
+    let displacements = &target.displacements;
     for (step, rotation) in rotations.iter_mut().enumerate() {
+        // The place of a pose's turn has the pose's rotation.
+        let step = if step < displacements.len() { step } else { step - displacements.poses };
         let joints = joints(step + 1)?;
         let turned = (joints.follower_pin - joints.crank_pin) / along;
         *rotation = turned / turned.norm();

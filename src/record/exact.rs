@@ -1,4 +1,5 @@
-//! Exact synthesis: every linkage through nine points, counted, and the real ones listed.
+//! Exact synthesis: every linkage through nine points, or through a mixture of poses and points that has finitely many,
+//! counted, and the real ones listed.
 
 use crate::mechanism::{AssemblyMode, FourBar, LinkageType};
 use crate::task::Defect;
@@ -7,13 +8,31 @@ use serde::{Deserialize, Serialize};
 /// So many classes pass through nine points in general position: C. W. Wampler, A. P. Morgan, A. J. Sommese (1992).
 pub const GENERIC_CLASSES: usize = 1442;
 
-/// What the exact solution of a nine-point problem found.
+/// Returns the number of classes of targets in general position, `poses` of them poses and the others points.
 ///
-/// A class is one coupler curve through the points: three cognates with two labels of their links. That each linkage
-/// marked as certified exists is proved; that no others do is not: that rests on the published count of
-/// [`GENERIC_CLASSES`] for points in general position.
+/// Two, three and four poses: D. A. Brake, J. D. Hauenstein, A. P. Murray, D. H. Myszka, C. W. Wampler (2016). Five: four
+/// dyads, in pairs. One pose among points asks for no more than a point does.
+pub fn generic_classes(poses: usize) -> usize {
+    match poses {
+        0 | 1 => GENERIC_CLASSES,
+        2 => 1112,
+        3 => 201,
+        4 => 30,
+        _ => 6,
+    }
+}
+
+/// What the exact solution of a problem found.
+///
+/// A class is one coupler curve through nine points: three cognates with two labels of their links. Where there are poses it
+/// is one linkage, with two labels: cognates turn the coupler differently. That each linkage
+/// marked as certified exists is proved; that no others do is not: that rests on the published count
+/// ([`generic_classes`]) for targets in general position.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExactRecord {
+    /// The number of poses among the targets.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub poses: usize,
     /// How the solutions are counted.
     pub census: Census,
     /// Whether as many classes were found as points in general position have.
@@ -22,6 +41,12 @@ pub struct ExactRecord {
     pub completeness: Completeness,
     /// Every real class by its best linkage, better first.
     pub linkages: Vec<ExactLinkage>,
+}
+
+/// Whether there are none: that of a path is not written.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+fn is_zero(n: &usize) -> bool {
+    *n == 0
 }
 
 /// What may be said of the list of classes as a whole. None of it is proved.
@@ -86,7 +111,7 @@ pub struct Census {
 pub struct ExactLinkage {
     /// Its rank among the candidates, 0 where it is none of them.
     pub rank: usize,
-    /// The best of its six mechanisms under the problem's requirements.
+    /// The best of its mechanisms under the problem's requirements.
     pub linkage: FourBar,
     /// Its crank angle at each point, degrees, unwrapped.
     pub crank_deg: Vec<f64>,
@@ -108,7 +133,7 @@ pub struct ExactLinkage {
     /// The requirements that it does not meet.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_met: Vec<String>,
-    /// Whether one of the six stays on one circuit ..
+    /// Whether one of its mechanisms stays on one circuit ..
     pub one_circuit: bool,
     /// .. passes the points in order ..
     pub in_order: bool,
@@ -136,7 +161,7 @@ pub struct ExactForm {
 /// A proof that a linkage through the points exists.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Certified {
-    /// One, and only one, real linkage whose coupler point passes exactly through all nine points has its fixed pivots
-    /// and, at the first point, its pins within this distance of those recorded. In the file's unit.
+    /// One, and only one, real linkage whose coupler passes exactly through all points and poses has its fixed pivots and, at
+    /// the first pose, or the first point where there is none, its pins within this distance of those recorded. In the file's unit.
     pub radius: f64,
 }

@@ -38,7 +38,9 @@ pub mod suite;
 pub mod sweep;
 
 pub use certificate::{Certificate, CertificatePart, Difference};
-pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
+pub use exact::{
+    Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES, generic_classes,
+};
 pub use extras::{Alternative, Family, ON_BOUND_TEXT, Warning, WarningKind};
 pub use front::{Axis, EQUAL_FIGURES, Figures, Front, LEAST_AXES, MOST_AXES, MOST_MEMBERS, Member, Picks};
 pub use limits::BeyondLimits;

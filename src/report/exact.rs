@@ -1,11 +1,11 @@
-//! The linkages through nine points (exact synthesis), in words and as a table.
+//! The linkages through nine points, or poses and points (exact synthesis), in words and as a table.
 
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain, verdict};
 use super::text::{COLUMNS, clean, grouped, indented, shortened, significant, wrapped};
 use super::words;
 use crate::mechanism::AssemblyMode;
-use crate::record::{Census, Completeness, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
+use crate::record::{Census, Completeness, ExactLinkage, ExactRecord, Record, generic_classes};
 use crate::task::Defect;
 
 /// The number of rows if not all are asked for.
@@ -14,7 +14,7 @@ const FEW: usize = 8;
 /// Returns the census and the real linkages, the best of them or `all`; empty for a record without any.
 pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
     let Some(exact) = &record.exact else { return String::new() };
-    let mut out = format!("\n  {}\n", colour.paint(Ink::Strong, "Every linkage through the nine points"));
+    let mut out = format!("\n  {}\n", colour.paint(Ink::Strong, &title(exact)));
     for sentence in said(record, exact) {
         out.push_str(&wrapped("    ", "    ", &sentence, COLUMNS));
     }
@@ -24,10 +24,11 @@ pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
     let shown = if all { exact.linkages.len() } else { exact.linkages.len().min(FEW) };
     out.push('\n');
     out.push_str(&rows(record, &exact.linkages[..shown], colour));
-    let mut key = String::from(
-        "curve: what the best of its six mechanisms (three cognates, either link driven) can do. defects, \
-         transmission, ratio: of the one listed. t1: how it is assembled at each point. radius: one exact linkage is \
-         proved to stand this near.",
+    let mut key = format!(
+        "curve: what {} can do. defects, transmission, ratio: of the one listed. t1: how it is assembled at each {}. \
+         radius: one exact linkage is proved to stand this near.",
+        best_of(exact),
+        if exact.poses == 0 { "point" } else { "target" }
     );
     let more = exact.linkages.len() - shown;
     if more > 0 {
@@ -46,6 +47,37 @@ pub(super) fn said(record: &Record, exact: &ExactRecord) -> Vec<String> {
     said.into_iter().filter(|sentence| !sentence.is_empty()).collect()
 }
 
+/// Returns the poses and points in words: "nine points".
+pub fn targets(exact: &ExactRecord) -> &'static str {
+    match exact.poses {
+        0 => "nine points",
+        1 => "one pose and eight points",
+        2 => "two poses and six points",
+        3 => "three poses and four points",
+        4 => "four poses and two points",
+        _ => "five poses",
+    }
+}
+
+/// Returns the heading of the list.
+pub(super) fn title(exact: &ExactRecord) -> String {
+    format!("Every linkage through the {}", targets(exact))
+}
+
+/// Returns what a class is listed by.
+pub(super) fn best_of(exact: &ExactRecord) -> &'static str {
+    if exact.poses == 0 {
+        "the best of its six mechanisms (three cognates, either link driven)"
+    } else {
+        "the better of its two mechanisms (either link driven)"
+    }
+}
+
+/// Returns up to what solutions are counted once.
+fn up_to(exact: &ExactRecord) -> &'static str {
+    if exact.poses == 0 { "up to cognates" } else { "up to the order of the two links" }
+}
+
 /// Returns one plain sentence instead of a census if the points are in special position and no solution was found.
 pub fn none_through(record: &Record) -> Option<String> {
     let exact = record.exact.as_ref()?;
@@ -57,16 +89,17 @@ pub fn none_through(record: &Record) -> Option<String> {
     } else {
         "the candidates come near"
     };
-    Some(if on_one_line(&record.problem.resolved.task.points) {
+    let all = targets(exact);
+    Some(if exact.poses == 0 && on_one_line(&record.problem.resolved.task.points) {
         format!(
             "The nine points lie on one line, and a coupler curve meets a line in at most six points: no linkage passes \
              through all nine; {nearest}."
         )
     } else {
         format!(
-            "The nine points are non-generic (in special position), and no linkage through all nine was found (points in \
-             general position have {} solutions): {nearest}.",
-            count(GENERIC_CLASSES)
+            "The {all} are non-generic (in special position), and no linkage through all of them was found ({all} in general \
+             position have {} solutions): {nearest}.",
+            count(generic_classes(exact.poses))
         )
     })
 }
@@ -85,7 +118,7 @@ fn on_one_line(points: &[[f64; 2]]) -> bool {
 
 /// Returns sentences on the number and kind of solutions, the search for them, and the proof.
 pub fn sentences(exact: &ExactRecord) -> [String; 4] {
-    [found(exact), real(&exact.census), paths(&exact.census), proof(exact)]
+    [found(exact), real(exact), paths(&exact.census), proof(exact)]
 }
 
 fn count(n: usize) -> String {
@@ -96,17 +129,20 @@ fn count(n: usize) -> String {
 fn found(exact: &ExactRecord) -> String {
     let census = &exact.census;
     let found = count(census.classes);
-    let all = count(GENERIC_CLASSES);
-    let some = format!("{found} of {all} solutions up to cognates were found");
+    let all = count(generic_classes(exact.poses));
+    let (targets, up_to) = (targets(exact), up_to(exact));
+    let some = format!("{found} of {all} solutions {up_to} were found");
     match exact.completeness {
         Completeness::Complete => {
-            format!("{found} solutions up to cognates: as many as nine points in general position have.")
+            format!("{found} solutions {up_to}: as many as {targets} in general position have.")
         }
         Completeness::NonGeneric => {
             let isolated = count(census.certified);
             let mut text = format!(
-                "The points are non-generic: {isolated} isolated solutions up to cognates were found, where points in \
-                 general position have {all}."
+                "The {} are non-generic: {isolated} isolated solutions {up_to} were found, where {} in general position \
+                 have {all}.",
+                if exact.poses == 0 { "points" } else { targets },
+                if exact.poses == 0 { "points" } else { targets },
             );
             if census.not_certified > 0 {
                 let rest = count(census.not_certified);
@@ -119,13 +155,19 @@ fn found(exact: &ExactRecord) -> String {
     }
 }
 
-fn real(census: &Census) -> String {
+fn real(exact: &ExactRecord) -> String {
+    let census = &exact.census;
     let real = match census.real {
         1 => "1 is a linkage".to_owned(),
         n => format!("{} are linkages", count(n)),
     };
+    let without = if exact.poses == 0 {
+        "have a real curve that no real linkage draws"
+    } else {
+        "have links that are conjugates of each other"
+    };
     let mut text = format!(
-        "{real}, {} more have a real curve that no real linkage draws, {} are complex.",
+        "{real}, {} more {without}, {} are complex.",
         count(census.real_curve),
         count(census.complex)
     );
@@ -137,9 +179,10 @@ fn real(census: &Census) -> String {
     }
     if census.real > 0 {
         text.push_str(&format!(
-            " Of the real ones {} can pass all points on one circuit, {} of them in order, {} of these on one branch: \
+            " Of the real ones {} can pass all {} on one circuit, {} of them in order, {} of these on one branch: \
              free of defects.",
             count(census.one_circuit),
+            if exact.poses == 0 { "points" } else { "targets" },
             count(census.in_order),
             count(census.free_of_defects)
         ));
@@ -180,7 +223,13 @@ fn proof(exact: &ExactRecord) -> String {
     }
     text.push_str(". Not proved: that there are no others; ");
     text.push_str(if exact.generic {
-        "that rests on the count published by Wampler, Morgan and Sommese (1992)."
+        match exact.poses {
+            0 | 1 => "that rests on the count published by Wampler, Morgan and Sommese (1992).",
+            2..=4 => {
+                "that rests on the count published by Brake, Hauenstein, Murray, Myszka and Wampler (2016)."
+            }
+            _ => "that rests on Burmester's count of dyads, four at most.",
+        }
     } else {
         "and solutions that are not isolated are not listed."
     });

@@ -375,6 +375,8 @@ pub(super) fn fewer(record: &Record) -> Option<String> {
         (false, false) if is_motion => {
             "whatever else the search judged takes the body the way of one of these."
         }
+        (true, true) if is_motion => "no other linkage through these poses and points is accepted.",
+        (true, false) if is_motion => "no other linkage passes these poses and points.",
         (true, true) => "no other linkage through the nine points is accepted.",
         (true, false) => "no other linkage passes the nine points.",
         (false, true) => {

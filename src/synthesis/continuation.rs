@@ -1,7 +1,7 @@
-//! The method `continuation`: all linkages through nine precision points, as candidates, alone or beside the
-//! approximate answers of `auto`.
+//! The method `continuation`: all linkages through nine precision points, or through poses and points of which there are
+//! finitely many, as candidates, alone or beside the approximate answers of `auto`.
 //!
-//! The points are solved once ([`crate::numbers::nine_point`]); bounds and requirements do not enter the equations, they choose among
+//! The targets are solved once ([`crate::numbers::nine_point`]); bounds and requirements do not enter the equations, they choose among
 //! the answers. If `auto` gets fewer acceptable exact answers than it was asked for, it goes on to approximate. Exact
 //! linkages that a requirement forbids are not used as starts for that: they led to no better answer than those that
 //! are drawn, at a tenth to a third more evaluations.
@@ -15,9 +15,10 @@ use crate::numbers::nine_point::certificate::{Certificate, certify, certify_all}
 use crate::numbers::nine_point::distinct::not_proved_distinct;
 use crate::numbers::nine_point::{Options, Reality, Solution, Solved, Target};
 use crate::record::{
-    Candidate, Census, Certified, Completeness, Evaluations, ExactRecord, GENERIC_CLASSES, Reason,
+    Candidate, Census, Certified, Completeness, Evaluations, ExactRecord, Reason, generic_classes,
 };
 use crate::task::Problem;
+use crate::task::forms::precision::Precise;
 use crate::task::spec::Method;
 use rayon::prelude::*;
 
@@ -37,7 +38,7 @@ pub struct Exact {
 /// the census.
 pub fn listed(
     problem: &Problem,
-    target: &Target,
+    target: &Precise,
     (census, completeness): (Census, Completeness),
     real: &[Solution],
     depth: Depth,
@@ -56,16 +57,17 @@ pub fn listed(
         ..census
     };
     let linkages = classes.iter().zip(proofs).map(|(class, proof)| class.listed(proof)).collect();
-    let generic = census.classes == GENERIC_CLASSES;
-    Exact { record: ExactRecord { census, generic, completeness, linkages }, classes }
+    let poses = problem.task().body().map_or(0, |body| body.angles.iter().flatten().count());
+    let generic = census.classes == generic_classes(poses);
+    Exact { record: ExactRecord { poses, census, generic, completeness, linkages }, classes }
 }
 
 /// Lists all real linkages of a quick solve, for a target that moves: without certificates and without distances to
 /// whole curves.
-pub fn glanced(problem: &Problem, solved: &Solved) -> Exact {
+pub fn glanced(problem: &Problem, target: &Precise, solved: &Solved) -> Exact {
     let real = solved.classes.iter().filter(|class| class.reality == Reality::Real);
     let real: Vec<Solution> = real.map(|class| class.solution).collect();
-    listed(problem, &solved.target, ended(solved), &real, Depth::Glance)
+    listed(problem, target, ended(solved), &real, Depth::Glance)
 }
 
 /// Returns the census of the paths and the completeness, in the record's terms; nothing is certified yet.
@@ -171,14 +173,15 @@ pub fn solve(context: Context<'_>) -> Option<Exact> {
     if !matches!(problem.spec().solve.method, Method::Auto | Method::Continuation) {
         return None;
     }
-    let target = target(problem)?;
+    let precise = target(problem)?;
+    let target = &precise.target;
     let progress = |ended: usize, of: usize| (context.observer)(&Progress::of(NAME, ended as u64, of as u64));
-    let solved = nine_point::solve(&target, &Options::default(), &progress, context.budget.cancel);
+    let solved = nine_point::solve(target, &Options::default(), &progress, context.budget.cancel);
     let solutions: Vec<Solution> = solved.classes.iter().map(|class| class.solution).collect();
-    let proofs: Vec<Option<Certificate>> = certify_all(&target, &solutions)
+    let proofs: Vec<Option<Certificate>> = certify_all(target, &solutions)
         .into_par_iter()
         .zip(&solutions)
-        .map(|(proof, solution)| proof.ok().or_else(|| of_a_cognate(&target, solution)))
+        .map(|(proof, solution)| proof.ok().or_else(|| of_a_cognate(target, solution)))
         .collect();
     let certificates: Vec<Certificate> = proofs.iter().flatten().copied().collect();
     // Real solutions, as refined by the certificate.
@@ -202,5 +205,5 @@ pub fn solve(context: Context<'_>) -> Option<Exact> {
         not_told_apart: not_proved_distinct(&certificates).len(),
         ..census
     };
-    Some(listed(problem, &target, (census, completeness), &real, Depth::Whole))
+    Some(listed(problem, &precise, (census, completeness), &real, Depth::Whole))
 }

@@ -225,6 +225,7 @@ fn carried(mut solution: Solution, from: &Displacements, to: &Displacements) -> 
         let there = Displacements {
             delta: between(from.delta, to.delta),
             starred: between(from.starred, to.starred),
+            poses: 0,
         };
         match refine(&there, &solution) {
             Ok(refined) if refined.moved < 0.05 => {
@@ -250,8 +251,11 @@ fn solutions_that_are_not_their_own_conjugates_are_proved_complex() {
         let mut near = |of: [Complex; 8]| {
             of.map(|z| z + Complex::new(normal(&mut stream, 0.0, 0.4), normal(&mut stream, 0.0, 0.4)))
         };
-        let [one, two] =
-            [(); 2].map(|()| Displacements { delta: near(start.delta), starred: near(start.starred) });
+        let [one, two] = [(); 2].map(|()| Displacements {
+            delta: near(start.delta),
+            starred: near(start.starred),
+            poses: 0,
+        });
         let around = carried(known.solution, &start, &one)
             .and_then(|solution| carried(solution, &one, &two))
             .and_then(|solution| carried(solution, &two, &start));

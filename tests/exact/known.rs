@@ -156,6 +156,6 @@ pub fn random_complex(stream: &mut Stream) -> (Displacements, Solution) {
         let delta = (linear + (linear * linear - f * constant * 4.0).sqrt()) / (f * 2.0);
         (delta, e - f * delta)
     });
-    let displacements = Displacements { delta: both.map(|b| b.0), starred: both.map(|b| b.1) };
+    let displacements = Displacements { delta: both.map(|b| b.0), starred: both.map(|b| b.1), poses: 0 };
     (displacements, Solution { pins, grounds, pins_starred, grounds_starred, rotations })
 }

@@ -9,6 +9,7 @@ use linkwright::internals::record::{Census, Completeness, ExactLinkage};
 use linkwright::internals::synthesis::continuation::{Exact, listed};
 use linkwright::internals::task::Defect;
 use linkwright::internals::task::Problem;
+use linkwright::internals::task::forms::precision::Precise;
 
 fn problem(target: &Target, more: &str) -> Problem {
     let points: Vec<String> = target.points.iter().map(|p| format!("[{}, {}]", p.re, p.im)).collect();
@@ -36,7 +37,7 @@ fn listing(name: &str, points: [[f64; 2]; 9], real_curve: usize, more: &str) -> 
     let target = target(points);
     let real: Vec<Solution> = verdicts(name, &target).iter().map(|class| class.solution).collect();
     let counted = (census(real.len(), real_curve), Completeness::Complete);
-    listed(&problem(&target, more), &target, counted, &real, Depth::Whole)
+    listed(&problem(&target, more), &Precise::from(target), counted, &real, Depth::Whole)
 }
 
 fn free(list: &[ExactLinkage]) -> usize {

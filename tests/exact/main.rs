@@ -1,4 +1,4 @@
-//! Exact synthesis through nine points: all solutions, and what is proved of them.
+//! Exact synthesis through nine points, and through poses and points: all solutions, and what is proved of them.
 
 mod certificate;
 #[path = "../common/mod.rs"]
@@ -7,8 +7,11 @@ mod equations;
 mod known;
 mod listing;
 mod mechanisms;
+mod mixed;
 #[path = "../../examples/nine-point-start-set/monodromy.rs"]
 mod monodromy;
+#[path = "../common/poses.rs"]
+mod poses;
 mod problems;
 #[path = "../common/random.rs"]
 mod random;

@@ -6,6 +6,7 @@ use linkwright::internals::judge::mechanisms::Mechanism;
 use linkwright::internals::judge::mechanisms::{mechanisms, solution_of};
 use linkwright::internals::mechanism::{Complex, xy};
 use linkwright::internals::numbers::nine_point::Target;
+use linkwright::internals::task::forms::precision::Precise;
 use linkwright::internals::task::{Task, TaskOptions, Timing};
 
 fn wms3() -> (Target, Vec<Verdict>) {
@@ -21,7 +22,8 @@ fn task(target: &Target) -> Task {
 /// The mechanisms of each known class.
 fn all(target: &Target, known: &[Verdict]) -> Vec<Vec<Mechanism>> {
     let task = task(target);
-    known.iter().map(|class| mechanisms(&task, target, &class.solution)).collect()
+    let precise = Precise::from(*target);
+    known.iter().map(|class| mechanisms(&task, &precise, &class.solution)).collect()
 }
 
 fn abilities(list: &[Mechanism]) -> [bool; 3] {
@@ -100,7 +102,8 @@ fn a_mechanism_leads_back_to_its_solution() {
     for (class, list) in known.iter().zip(all(&target, &known)) {
         let first = &list[0];
         let back =
-            solution_of(&target, &first.linkage, &first.crank_angles, &first.assemblies).expect("closed");
+            solution_of(&Precise::from(target), &first.linkage, &first.crank_angles, &first.assemblies)
+                .expect("closed");
         let span = first.linkage.longest_link() / target.scale + 1.0;
         let pairs = back.pins.iter().zip(&class.solution.pins);
         // A position near a toggle is known to the root of rounding.

@@ -16,7 +16,7 @@ use crate::synthesis::{self, Budget, Observer, SearchOutcome, answers, conflicts
 use crate::synthesis::{errors_without, offered_cognates};
 use crate::task::Problem;
 use crate::task::TaskError;
-use crate::task::forms::precision::{Refusal, precision_points};
+use crate::task::forms::precision::{Refusal, precise};
 use crate::task::spec::{Method, ProblemSpec};
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
@@ -158,7 +158,7 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     let start = Instant::now();
     let problem = Problem::new(job.spec.clone())?;
     if job.spec.solve.method == Method::Continuation {
-        precision_points(&problem)?;
+        precise(&problem)?;
     }
     let budget = Budget::new(context.cancel, job.spec.solve.time_limit_s);
     let inputs =

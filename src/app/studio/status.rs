@@ -10,7 +10,7 @@ use crate::task::requirement::RequirementKind;
 pub(super) fn under_way(progress: &Progress) -> String {
     match (progress.phase, progress.accepted) {
         ("what would help", _) => "Nothing acceptable was found: trying which change would help.".into(),
-        ("continuation", _) => "Following the solution paths of the nine points to their ends.".into(),
+        ("continuation", _) => "Following the solution paths to their ends.".into(),
         (_, false) if progress.best_sum_sq.is_some() => "Searching: nothing acceptable yet.".into(),
         _ => match progress.hits {
             Some(HitsSoFar { came, wanted }) => {
@@ -102,17 +102,17 @@ fn in_the_way(record: &Record) -> String {
 /// Counts all linkages through nine points in words, with proofs if there are any.
 pub(super) fn census(record: &ExactRecord) -> Vec<String> {
     if record.completeness == Completeness::NonGeneric && record.census.classes == 0 {
-        return vec![
-            "No linkage was found that passes all nine points: they are in special position, such as on one line."
-                .into(),
-        ];
+        return vec![format!(
+            "No linkage was found that passes all {}: they are in special position, such as on one line.",
+            exact::targets(record)
+        )];
     }
     let [found, real, paths, proof] = exact::sentences(record);
     let counted = &record.census;
     // Solutions are known to be isolated by their proofs.
     match (counted.certified, record.completeness) {
         (0, Completeness::Complete) => vec![found, real],
-        (0, _) => vec![format!("{} solutions up to cognates so far, not yet proved.", counted.classes), real],
+        (0, _) => vec![format!("{} solutions so far, not yet proved.", counted.classes), real],
         _ => vec![found, real, paths, proof],
     }
 }

@@ -230,7 +230,7 @@ impl Tab {
         self.asked = Some((job, problem));
         self.begin = Some(Instant::now() + if ask.moving { REST } else { Duration::ZERO });
         let said = match (&self.exact, self.session.candidates()) {
-            (Some(_), _) => "All linkages through the nine points follow your hand; proofs when it rests.",
+            (Some(_), _) => "All linkages through these targets follow your hand; proofs when it rests.",
             (None, []) => LOOKING,
             (None, _) => "The linkages follow your hand; the search goes on when it rests.",
         };

@@ -32,7 +32,7 @@ use crate::mechanism::Unit;
 use crate::numbers::optimise::population::PopulationError;
 use crate::record::ProblemRecord;
 use crate::task::forms::precision;
-use crate::task::forms::precision::precision_points;
+use crate::task::forms::precision::precise;
 use crate::task::forms::reduced;
 use crate::task::requirement::{RawRequire, RequirementKind};
 use crate::task::spec::{
@@ -438,20 +438,20 @@ fn deviation_of(toml: &TomlText<'_>, path: &TaskSpec) -> Checked<Option<Diagnost
     Ok(path.weight.is_some().then(|| toml.at("solve.objective", message).with_help(help)))
 }
 
-/// Checks that continuation has nine precision points.
+/// Checks that continuation has nine precision points, or poses and points that have finitely many answers.
 fn continuation_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Checked<()> {
     if spec.solve.method != Method::Continuation {
         return Ok(());
     }
     // Faults of the task itself have been reported before.
-    let Some(Err(refusal)) = Problem::new(spec.clone()).ok().map(|problem| precision_points(&problem)) else {
+    let Some(Err(refusal)) = Problem::new(spec.clone()).ok().map(|problem| precise(&problem)) else {
         return Ok(());
     };
     let key = match refusal {
-        precision::Refusal::Points { .. } | precision::Refusal::Timed | precision::Refusal::Motion => {
-            "solve.method".to_owned()
+        precision::Refusal::Coincident { second, .. } if spec.task.body.is_none() => {
+            format!("task.path.points.{second}")
         }
-        precision::Refusal::Coincident { second, .. } => format!("task.path.points.{second}"),
+        _ => "solve.method".to_owned(),
     };
     toml.refuse(&key, refusal.to_string(), refusal.remedy())
 }

@@ -6,7 +6,7 @@ use crate::judge::assess::assess;
 use crate::judge::certified::{certified, nearly_exact, same, target};
 use crate::judge::exact_linkages::{Recomputed, class_at};
 use crate::record::{
-    Candidate, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES, Reason, Record,
+    Candidate, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, Reason, Record, generic_classes,
 };
 
 /// The factor by which the radius of a recomputed proof may differ: it is an upper bound that depends on rounding.
@@ -27,10 +27,13 @@ impl Comparison<'_> {
         }
         let Some(exact) = &record.exact else { return };
         self.census(exact, record.termination.reason == Reason::Cancelled);
+        let poses = problem.task().body().map_or(0, |body| body.angles.iter().flatten().count());
+        self.same("exact.poses", exact.poses, poses);
         let Some(target) = target else {
-            return self.differ("exact", "nine points and what passes through them", "not nine points");
+            let wanted = "points and poses that have finitely many answers";
+            return self.differ("exact", wanted, "a task without");
         };
-        let far = target.points.iter().map(|point| point.norm()).fold(0.0, f64::max);
+        let far = target.target.points.iter().map(|point| point.norm()).fold(0.0, f64::max);
         let found_again = far <= FOUND_AGAIN * problem.task().size();
         for (i, listed) in exact.linkages.iter().enumerate() {
             let mut own = self.under(&format!("exact.linkages {}: ", i + 1));
@@ -132,7 +135,7 @@ impl Comparison<'_> {
         // A search that was cancelled records only that.
         let found = if cancelled && exact.completeness == Completeness::Cancelled {
             Completeness::Cancelled
-        } else if c.classes == GENERIC_CLASSES {
+        } else if c.classes == generic_classes(exact.poses) {
             Completeness::Complete
         } else if c.failed == 0 && c.singular > 0 && c.singular >= c.duplicate {
             Completeness::NonGeneric
@@ -140,7 +143,7 @@ impl Comparison<'_> {
             Completeness::Incomplete
         };
         self.alike("exact.completeness", &exact.completeness, &found);
-        self.same("exact.generic", exact.generic, c.classes == GENERIC_CLASSES);
+        self.same("exact.generic", exact.generic, c.classes == generic_classes(exact.poses));
     }
 
     fn figures(&mut self, listed: &ExactLinkage, found: &Candidate) {

@@ -7,7 +7,7 @@
 use super::classes::Class;
 use super::conjugation::Reality;
 use super::equations::{LEG, UNKNOWNS, rounded, unknowns};
-use super::target::{Displacements, STEPS, Solution};
+use super::target::{Displacements, MOST_POSES, STEPS, Solution};
 use super::tracker::{Ending, NODES, Parameters, Segment, add, continuation};
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::ORDER;
@@ -133,13 +133,16 @@ fn displaced(along: &Segment, t: f64) -> Displacements<(DoubleComplex, DoubleCom
 /// Computes Newton's step at t and dz/dt.
 fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
     let zero = DoubleComplex::default();
-    let Displacements { delta, starred } = displaced(along, t);
+    let at = displaced(along, t);
+    let (points, len) = (at.points(), at.len());
+    let Displacements { delta, starred, .. } = at;
     let mut matrix = [[zero; ORDER]; ORDER];
     let mut right = [[zero; 2]; ORDER];
     let mut legs = [[[zero; LEG]; STEPS]; 2];
     let mut sides = [[[zero; 2]; STEPS]; 2];
     let mut turns = [[zero; STEPS]; 2];
-    for j in 0..STEPS {
+    let mut given = [[zero; 2]; MOST_POSES];
+    for j in 0..len {
         let tau = z[ORDER + j];
         let t = tau + real(1.0);
         let inverse = real(1.0) / t;
@@ -151,6 +154,17 @@ fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
             legs[leg][j] = [tau * r, m_s, sigma * l, m];
             turns[leg][j] = x * t * r - x_s * inverse * l;
             sides[leg][j] = [-(u * m_s + m * r), -(r * delta[j].1 + l * starred[j].1)];
+        }
+        if let Some(pose) = j.checked_sub(points) {
+            given[pose] = turned(t, delta[len + pose], starred[len + pose]);
+            for leg in 0..2 {
+                let row = points + 2 * pose + leg;
+                matrix[row][LEG * leg..LEG * (leg + 1)].copy_from_slice(&legs[leg][j]);
+                for side in 0..2 {
+                    right[row][side] = sides[leg][j][side] - turns[leg][j] * (given[pose][side] * inverse);
+                }
+            }
+            continue;
         }
         let (p, q) = (turns[1][j], -turns[0][j]);
         for i in 0..LEG {
@@ -167,7 +181,12 @@ fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
         for i in 0..ORDER {
             answer[i] = right[i][side];
         }
-        for j in 0..STEPS {
+        for (pose, given) in given.iter().enumerate().take(STEPS - len) {
+            let (turn, own) = (ORDER + points + pose, ORDER + len + pose);
+            answer[turn] = given[side];
+            answer[own] = turned(z[own] + real(1.0), delta[len + pose], starred[len + pose])[side];
+        }
+        for j in 0..points {
             let larger = usize::from(magnitude(turns[1][j]) > magnitude(turns[0][j]));
             let known = (0..LEG).map(|i| legs[larger][j][i] * right[LEG * larger + i][side]);
             let left = known.fold(sides[larger][j][side], |sum, term| sum - term);
@@ -176,6 +195,15 @@ fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
         answer
     };
     (answer(0), answer(1))
+}
+
+/// Computes Newton's change of the rotation T of a pose, above / below - T, and the one along the derivatives.
+fn turned(
+    t: DoubleComplex,
+    above: (DoubleComplex, DoubleComplex),
+    below: (DoubleComplex, DoubleComplex),
+) -> [DoubleComplex; 2] {
+    [above.0 / below.0 - t, (above.1 - t * below.1) / below.0]
 }
 
 fn magnitude(z: DoubleComplex) -> f64 {
@@ -222,11 +250,12 @@ mod tests {
 
     #[test]
     fn it_ends_where_the_tracker_in_doubles_does() {
-        let set = StartSet::embedded();
+        let set = StartSet::embedded(0);
         let turned = |of: [Complex; STEPS], by: f64| of.map(|z| z * Complex::from_polar(1.1, by) + by);
         let to = Displacements {
             delta: turned(set.displacements.delta, 0.5),
             starred: turned(set.displacements.starred, -0.3),
+            poses: 0,
         };
         let along = Segment { from: set.displacements, to };
         let starts: Vec<Solution> = set.solutions.iter().step_by(200).copied().collect();

@@ -38,7 +38,9 @@
 use super::conjugation;
 use super::conjugation::Reality;
 use super::discs::{Disc, Upper};
-use super::polynomial::{ExactDisplacements, PIVOTS, UNKNOWNS, columns, derivatives, solution, unknowns};
+use super::polynomial::{
+    Equation, ExactDisplacements, PIVOTS, UNKNOWNS, derivatives, equation, solution, unknowns,
+};
 use super::refinement::{
     Linearisation, Midpoint, NotRefined, Square, equations, newton, residual_error, residuals,
 };
@@ -266,13 +268,15 @@ fn contraction_bound(
     let mut defect = -Square::identity();
     let mut spread = [Upper::ZERO; UNKNOWNS];
     for (row, link, j) in equations() {
-        let places = columns(link, j);
-        let slopes = derivatives(
-            places.map(|i| discs[i]),
-            Disc::about(displacements.delta[j], Upper::ZERO),
-            Disc::about(displacements.starred[j], Upper::ZERO),
-        );
-        for (place, slope) in places.into_iter().zip(slopes) {
+        let delta = Disc::about(displacements.delta[j], Upper::ZERO);
+        let starred = Disc::about(displacements.starred[j], Upper::ZERO);
+        let slopes: Vec<(usize, Disc)> = match equation(displacements, link, j) {
+            Equation::Length(places) => {
+                places.into_iter().zip(derivatives(places.map(|i| discs[i]), delta, starred)).collect()
+            }
+            Equation::Turn(place) => vec![(place, starred)],
+        };
+        for (place, slope) in slopes {
             let entry = slope.times_power_of_two(linear.weights[place]).times_power_of_two(linear.rows[row]);
             spread[row] =
                 spread[row] + entry.radius + Upper::exactly(DOT_ERROR) * Upper::magnitude(entry.mid);

@@ -11,6 +11,9 @@
 //! ground pivots. To a focus a belong two pins, x and in another cognate a - x; their product x (a - x) belongs to
 //! the focus. So the set of the three (focus, product), with their starred twins, identifies a class. The foci alone
 //! do so in general: linkages that are mirror images, of foci on a symmetric target's axis, share them.
+//!
+//! With poses a class has two solutions: a cognate turns the coupler differently. Foci and products tell such classes
+//! apart as well.
 
 use super::conjugation::Reality;
 use super::target::{Displacements, STEPS, Solution};
@@ -61,8 +64,13 @@ impl Solution {
         Solution { pins, grounds, pins_starred, grounds_starred, rotations }
     }
 
-    /// Returns the six solutions of the class: this one, its two cognates, and the three with their legs swapped.
+    /// Returns the six solutions of the class: this one, its two cognates, and the three with their legs swapped. Of a
+    /// target with poses, which has no cognates, there are two: this one and the one with its legs swapped, in turn.
     pub fn images(&self, at: &Displacements) -> [Solution; 6] {
+        if at.poses > 0 {
+            let swapped = self.swapped();
+            return [*self, swapped, *self, swapped, *self, swapped];
+        }
         let first = self.cognate(at);
         let second = first.cognate(at);
         [*self, first, second, self.swapped(), first.swapped(), second.swapped()]

@@ -16,7 +16,7 @@
 //!
 //! (starred alike) take solutions to the others of their class, and sigma commutes with both. So sigma maps a class
 //! to a class, and if to itself, then as one of the six; being an involution, as the identity or as one of the three
-//! exchanges e, e r, e r^2 = r e. The identity: the six solutions are real. An exchange: a curve that is real, as its
+//! exchanges e, e r, e r^2 = r e (of a target with poses there are no cognates, and e alone is left). The identity: the six solutions are real. An exchange: a curve that is real, as its
 //! class is, drawn by linkages that are not.
 //!
 //! Let w be the solution, known to lie in an enclosure, and to be the only solution in the polydisc D. If the image
@@ -71,11 +71,12 @@ pub(super) fn reality(
     if by_identity == Image::Itself {
         return Reality::Real;
     }
-    let by_exchanges = [
-        image_of(Some(enclosure), true),
-        image_of(roberts(displacements, &enclosure), true),
-        image_of(roberts(displacements, &exchange(&enclosure)), false),
-    ];
+    let mut by_exchanges = vec![image_of(Some(enclosure), true)];
+    // Cognates turn the coupler differently: where its turns are given they are no solutions.
+    if displacements.poses == 0 {
+        by_exchanges.push(image_of(roberts(displacements, &enclosure), true));
+        by_exchanges.push(image_of(roberts(displacements, &exchange(&enclosure)), false));
+    }
     if by_identity == Image::Unknown {
         Reality::Undecided
     } else if by_exchanges.contains(&Image::Itself) {

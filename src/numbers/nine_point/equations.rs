@@ -12,11 +12,12 @@
 //! No large terms cancel in this form: it serves links of ten thousand times the points' extent, whose u is large or
 //! whose tau is small, as well as others.
 //!
-//! T_j occurs in two equations, one per leg, so that p_2 (row of leg 1) - p_1 (row of leg 2) is free of it: eight
+//! The T_j of a pose is given: both its rows stay as they are, with p times its own change on the right. The T_j of a
+//! point occurs in two equations, one per leg, so that p_2 (row of leg 1) - p_1 (row of leg 2) is free of it: eight
 //! rows in the eight pivots. dlog T_j follows from the leg with the larger |p|. The rows are scaled to a largest
 //! entry of one before the elimination.
 
-use super::target::{Displacements, STEPS, Solution};
+use super::target::{Displacements, MOST_POSES, STEPS, Solution};
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::{ComplexLanes, ORDER, larger, solve};
 use linkwright_arithmetic::lane::{F64x8, Lane};
@@ -74,6 +75,10 @@ pub fn residuals(of: &Solution, at: &Displacements) -> [[Complex; STEPS]; 2] {
         let (x, a) = (of.pins[leg], of.grounds[leg]);
         let (x_s, a_s) = (of.pins_starred[leg], of.grounds_starred[leg]);
         std::array::from_fn(|j| {
+            if j >= at.len() {
+                let place = if leg == 0 { j - at.poses } else { j };
+                return of.rotations[place] * at.starred[j] - at.delta[j];
+            }
             let t = of.rotations[j];
             (x * t + at.delta[j] - a) * (x_s / t + at.starred[j] - a_s) - (x - a) * (x_s - a_s)
         })
@@ -115,6 +120,22 @@ fn linearised(
     }
 }
 
+/// Returns Newton's change of the rotation T of a pose, delta / starred - T, and with R = 2 the one along the velocity.
+#[inline(always)]
+fn turned<const R: usize>(
+    t: ComplexLanes,
+    at: &DisplacementLanes,
+    velocity: &DisplacementLanes,
+    place: usize,
+) -> [ComplexLanes; R] {
+    let below = at.starred[place].recip();
+    let mut changes = [at.delta[place] * below - t; R];
+    if R == 2 {
+        changes[R - 1] = (velocity.delta[place] - t * velocity.starred[place]) * below;
+    }
+    changes
+}
+
 /// Returns |re| + |im|.
 #[inline(always)]
 fn size(z: ComplexLanes) -> F64x8 {
@@ -139,7 +160,9 @@ pub fn steps<const R: usize>(
     let mut legs = [[[zero; LEG]; STEPS]; 2];
     let mut sides = [[[zero; R]; STEPS]; 2];
     let mut turns = [[zero; STEPS]; 2];
-    for j in 0..STEPS {
+    let mut given = [[zero; R]; MOST_POSES];
+    let (points, len) = (at.points(), at.len());
+    for j in 0..len {
         let t = z[ORDER + j] + ComplexLanes::splat(Complex::ONE);
         let inverse = t.recip();
         for leg in 0..2 {
@@ -151,6 +174,22 @@ pub fn steps<const R: usize>(
                 sides[leg][j][R - 1] =
                     -(at_leg.by_delta * velocity.delta[j] + at_leg.by_starred * velocity.starred[j]);
             }
+        }
+        if let Some(pose) = j.checked_sub(points) {
+            given[pose] = turned::<R>(t, at, velocity, len + pose);
+            for leg in 0..2 {
+                let row = points + 2 * pose + leg;
+                let largest = legs[leg][j].iter().map(|z| size(*z)).reduce(larger);
+                let scale = largest.unwrap_or(F64x8::splat(1.0)).recip();
+                for i in 0..LEG {
+                    matrix[row][LEG * leg + i] = legs[leg][j][i].scale(scale);
+                }
+                for r in 0..R {
+                    let by_turn = turns[leg][j] * (given[pose][r] * inverse);
+                    right[row][r] = (sides[leg][j][r] - by_turn).scale(scale);
+                }
+            }
+            continue;
         }
         let (p, q) = (turns[1][j], -turns[0][j]);
         let mut largest = F64x8::splat(0.0);
@@ -173,7 +212,13 @@ pub fn steps<const R: usize>(
         for i in 0..ORDER {
             answer[i] = right[i][r];
         }
-        for j in 0..STEPS {
+        for pose in 0..STEPS - len {
+            let (turn, own) = (ORDER + points + pose, ORDER + len + pose);
+            answer[turn] = given[pose][r];
+            let t = z[own] + ComplexLanes::splat(Complex::ONE);
+            answer[own] = turned::<R>(t, at, velocity, len + pose)[r];
+        }
+        for j in 0..points {
             let mut left = [sides[0][j][r], sides[1][j][r]];
             for (leg, left) in left.iter_mut().enumerate() {
                 for i in 0..LEG {

@@ -35,7 +35,7 @@ pub struct Moved {
 pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cancel: &AtomicBool) -> Moved {
     let ratio = previous.target.scale / target.scale;
     // In units of the new target, both ways of measuring give the same equations.
-    let from = previous.target.displacements.map(|d| d * ratio);
+    let from = previous.target.displacements.in_other_units(ratio.into(), ratio.into());
     let starts: Vec<Solution> = previous
         .classes
         .iter()
@@ -159,5 +159,6 @@ fn midpoint(from: &Displacements, to: &Displacements) -> Displacements {
     Displacements {
         delta: std::array::from_fn(|j| (from.delta[j] + to.delta[j]) * 0.5 + off(j, 0.754_877_7)),
         starred: std::array::from_fn(|j| (from.starred[j] + to.starred[j]) * 0.5 + off(j, 1.324_718_0)),
+        poses: to.poses,
     }
 }

@@ -1,5 +1,12 @@
 //! The sixteen equations as polynomials, over any numbers that can be added and multiplied.
 //!
+//! The turn T = delta / starred of a pose is given by the linear equation
+//!
+//! ```text
+//! f = T starred - delta
+//! ```
+//!
+//! once for the rotation in the pose's place and once for that in the place of the turn itself, which has no other use.
 //! The loop equation of a link (p, g) (a moving pin and its ground pivot) at point j, multiplied by T_j:
 //!
 //! ```text
@@ -30,13 +37,19 @@ pub type ExactDisplacements = Displacements<DoubleComplex>;
 
 impl From<&Target> for ExactDisplacements {
     /// Computes the displacements without rounding: the difference of two doubles is a double-double, and the scale
-    /// is a power of two. (A part below 2^-1022 of the scale may underflow; the bound of a residual covers it.)
+    /// is a power of two; turns are taken as they are. (A part below 2^-1022 of the scale may underflow; the bound of a residual covers it.)
     fn from(target: &Target) -> Self {
         let factor = target.scale.recip();
-        let delta = std::array::from_fn(|j| {
-            DoubleComplex::difference_of(target.points[j + 1], target.points[0]).times_power_of_two(factor)
+        let delta = std::array::from_fn(|j| match j.checked_sub(target.displacements.len()) {
+            Some(pose) => target.half_turns[pose].into(),
+            None => DoubleComplex::difference_of(target.points[j + 1], target.points[0])
+                .times_power_of_two(factor),
         });
-        ExactDisplacements { delta, starred: delta.map(DoubleComplex::conj) }
+        ExactDisplacements {
+            delta,
+            starred: delta.map(DoubleComplex::conj),
+            poses: target.displacements.poses,
+        }
     }
 }
 
@@ -58,10 +71,24 @@ pub fn solution(of: &[Complex; UNKNOWNS]) -> Solution {
     }
 }
 
-/// Returns the indices of the unknowns in the equation of link 0 (x, a) or 1 (y, b) at point j: p, g, p*, g*, T.
+/// An equation, with the places of its unknowns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Equation {
+    /// A link keeps its length from the first place to place j: p, g, p*, g*, T_j.
+    Length([usize; 5]),
+    /// The rotation of a pose is given.
+    Turn(usize),
+}
+
+/// Returns equation `link` (0 of x and a, 1 of y and b) of place j; in the place of a turn the first is that of the pose's
+/// rotation, the second that of the place's own.
 #[inline(always)]
-pub fn columns(link: usize, j: usize) -> [usize; 5] {
-    [link, 2 + link, 4 + link, 6 + link, PIVOTS + j]
+pub fn equation<Z>(of: &Displacements<Z>, link: usize, j: usize) -> Equation {
+    if j < of.len() {
+        Equation::Length([link, 2 + link, 4 + link, 6 + link, PIVOTS + j])
+    } else {
+        Equation::Turn(PIVOTS + if link == 0 { j - of.poses } else { j })
+    }
 }
 
 /// Evaluates f at one link and point.

@@ -7,7 +7,7 @@
 
 use super::discs::Upper;
 use super::polynomial::{
-    ExactDisplacements, PIVOTS, UNKNOWNS, columns, derivatives, solution, unknowns, value,
+    Equation, ExactDisplacements, PIVOTS, UNKNOWNS, derivatives, equation, solution, unknowns, value,
 };
 use super::target::{Displacements, STEPS, Solution, power_of_two_above};
 use linkwright_arithmetic::Complex;
@@ -133,20 +133,21 @@ impl Linearisation {
         let mut rows = [1.0; UNKNOWNS];
         let mut scaled = Square::zeros();
         for (row, link, j) in equations() {
-            let places = columns(link, j);
-            let slopes = derivatives(
-                places.map(|i| at[i]),
-                displacements.delta[j].to_complex(),
-                displacements.starred[j].to_complex(),
-            );
-            let slopes: [Complex; 5] = std::array::from_fn(|i| slopes[i] * weights[places[i]]);
-            let largest = slopes.iter().map(|d| d.norm()).fold(0.0, f64::max);
+            let (delta, starred) =
+                (displacements.delta[j].to_complex(), displacements.starred[j].to_complex());
+            let slopes: Vec<(usize, Complex)> = match equation(displacements, link, j) {
+                Equation::Length(places) => {
+                    places.into_iter().zip(derivatives(places.map(|i| at[i]), delta, starred)).collect()
+                }
+                Equation::Turn(place) => vec![(place, starred)],
+            };
+            let largest = slopes.iter().map(|(place, d)| (d * weights[*place]).norm()).fold(0.0, f64::max);
             if !(f64::MIN_POSITIVE * 2.0..=f64::MAX / 4.0).contains(&largest) {
                 return Err(NotRefined::Singular);
             }
             rows[row] = power_of_two_above(largest).recip();
-            for (place, slope) in places.into_iter().zip(slopes) {
-                scaled[(row, place)] = slope * rows[row];
+            for (place, slope) in slopes {
+                scaled[(row, place)] = slope * weights[place] * rows[row];
             }
         }
         let inverse = scaled.try_inverse().ok_or(NotRefined::Singular)?;
@@ -180,7 +181,11 @@ pub(super) fn equations() -> impl Iterator<Item = (usize, usize, usize)> {
 pub(super) fn residuals(displacements: &ExactDisplacements, midpoint: &Midpoint) -> Midpoint {
     std::array::from_fn(|row| {
         let (link, j) = (row / STEPS, row % STEPS);
-        value(columns(link, j).map(|i| midpoint[i]), displacements.delta[j], displacements.starred[j])
+        let (delta, starred) = (displacements.delta[j], displacements.starred[j]);
+        match equation(displacements, link, j) {
+            Equation::Length(places) => value(places.map(|i| midpoint[i]), delta, starred),
+            Equation::Turn(place) => midpoint[place] * starred - delta,
+        }
     })
 }
 
@@ -189,17 +194,23 @@ pub(super) fn residuals(displacements: &ExactDisplacements, midpoint: &Midpoint)
 /// With e = [`RELATIVE_ERROR`]: a complex sum errs by at most e times its own magnitude, a complex product by 4 e
 /// times the product of magnitudes. With every difference replaced by the sum of magnitudes, L and M err by at most
 /// (1 + 4 + 1) e, their product by (6 + 6 + 4) e, T (U V) by (1 + 1 + 4 + 4) e, and f by (16 + 1) e of their
-/// majorants, but for terms in e^2; 32 e covers these as well.
+/// majorants, but for terms in e^2; 32 e covers these as well. The equation of a turn is one product and one difference.
 pub(super) fn residual_error(
     displacements: &ExactDisplacements,
     midpoint: &Midpoint,
     link: usize,
     j: usize,
 ) -> Upper {
-    let [p, g, ps, gs, t] = columns(link, j).map(|i| Upper::magnitude_of_double(midpoint[i]));
+    let size = |i: usize| Upper::magnitude_of_double(midpoint[i]);
     let delta = Upper::magnitude_of_double(displacements.delta[j]);
     let starred = Upper::magnitude_of_double(displacements.starred[j]);
-    let majorant = (p * t + (delta + g)) * (ps + (starred + gs) * t) + t * ((p + g) * (ps + gs));
+    let majorant = match equation(displacements, link, j) {
+        Equation::Length(places) => {
+            let [p, g, ps, gs, t] = places.map(size);
+            (p * t + (delta + g)) * (ps + (starred + gs) * t) + t * ((p + g) * (ps + gs))
+        }
+        Equation::Turn(place) => size(place) * starred + delta,
+    };
     Upper::exactly(32.0 * RELATIVE_ERROR) * majorant + Upper::exactly(UNDERFLOW)
 }
 

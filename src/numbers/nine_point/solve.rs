@@ -73,17 +73,24 @@ pub struct Solved {
 }
 
 impl Solved {
+    /// Returns the number of classes that a target in general position has.
+    pub fn generic_classes(&self) -> usize {
+        CLASSES[self.target.displacements.poses]
+    }
+
     /// Returns the completeness of the list.
     pub fn completeness(&self) -> Completeness {
         let census = &self.census;
         if self.cancelled {
             Completeness::Cancelled
-        } else if census.distinct == CLASSES {
+        } else if census.distinct == self.generic_classes() {
             Completeness::Complete
         } else if census.failed == 0 && census.singular > 0 && census.singular >= census.duplicates {
             Completeness::NonGeneric { isolated: census.distinct }
         } else {
-            Completeness::Incomplete { missing: CLASSES.saturating_sub(census.distinct + census.singular) }
+            Completeness::Incomplete {
+                missing: self.generic_classes().saturating_sub(census.distinct + census.singular),
+            }
         }
     }
 }
@@ -99,12 +106,12 @@ pub fn solve(
     progress: &(dyn Fn(usize, usize) + Sync),
     cancel: &AtomicBool,
 ) -> Solved {
-    let start = StartSet::embedded();
+    let start = StartSet::embedded(target.displacements.poses);
     let along = Segment { from: start.displacements, to: target.displacements };
     let mut ends = settle(&start.solutions, &along, options, progress, cancel);
     complete(&mut ends, &start.solutions, &along, options, cancel);
     let solved = judged(target, &ends, cancel.load(Ordering::Relaxed));
-    if solved.cancelled || solved.census.distinct == CLASSES {
+    if solved.cancelled || solved.census.distinct == solved.generic_classes() {
         return solved;
     }
     ends.fates.par_iter_mut().for_each(|end| *end = proved(target, *end));

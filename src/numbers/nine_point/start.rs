@@ -1,21 +1,22 @@
-//! The start set: one solution of each of the 1442 classes at a fixed complex target in general position.
+//! The start sets: one solution of each class at a fixed complex target in general position, of nine points and of each
+//! mixture of points and poses that has a finite number of answers.
 //!
 //! The file holds single-precision pivots; the T_j follow from them (each leg gives a quadratic, the legs share one
-//! root) and Newton's method restores full precision. `cargo run --release --example nine-point-start-set -- FILE`
-//! makes it anew from nothing, by monodromy.
+//! root; that of a pose is given) and Newton's method restores full precision. `cargo run --release --example
+//! nine-point-start-set -- FILE POSES` makes it anew from nothing, by monodromy.
 //!
 //! | bytes | content (little endian) |
 //! |---|---|
 //! | 0..4 | "LWNP" |
 //! | 4..8 | version, u32: 1 |
 //! | 8..12 | number of classes n, u32 |
-//! | 12..16 | zero |
+//! | 12..16 | number of poses beyond the first, u32 |
 //! | 16..272 | delta_1 .. delta_8, delta*_1 .. delta*_8: real and imaginary part, f64 |
 //! | 272.. | n times x, x - a, x*, x* - a*, y, y - b, y*, y* - b*: real and imaginary part, f32 |
 
 use super::correction::correct;
 use super::equations::{UNKNOWNS, solution};
-use super::target::{Displacements, STEPS, Solution};
+use super::target::{Displacements, MOST_POSES, STEPS, Solution};
 use super::tracker::Segment;
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::ORDER;
@@ -23,12 +24,22 @@ use linkwright_arithmetic::once::once;
 use std::sync::OnceLock;
 use thiserror::Error;
 
-/// The number of classes of a target in general position: 8652 solutions (Wampler, Morgan & Sommese 1992) over the
-/// six images.
-pub const CLASSES: usize = 1442;
+/// The number of classes of a target in general position, by the number of poses beyond the first.
+///
+/// Nine points: 8652 solutions (Wampler, Morgan & Sommese 1992) over the six images. Two, three and four poses with six,
+/// four and two points: 2224, 402 and 60 solutions (D. A. Brake, J. D. Hauenstein, A. P. Murray, D. H. Myszka,
+/// C. W. Wampler, "The complete solution of Alt-Burmester synthesis problems for four-bar linkages", ASME J. Mech. Robot. 8
+/// (2016) 041018) over the two labels. Five poses: four dyads in pairs (Burmester).
+pub const CLASSES: [usize; MOST_POSES + 1] = [1442, 1112, 201, 30, 6];
 
-/// The bytes of the embedded file.
-pub const EMBEDDED: &[u8] = include_bytes!("start-set.bin");
+/// The bytes of the embedded files, by the number of poses beyond the first.
+pub const EMBEDDED: [&[u8]; MOST_POSES + 1] = [
+    include_bytes!("start-set.bin"),
+    include_bytes!("start-set-2-poses.bin"),
+    include_bytes!("start-set-3-poses.bin"),
+    include_bytes!("start-set-4-poses.bin"),
+    include_bytes!("start-set-5-poses.bin"),
+];
 
 const MAGIC: &[u8; 4] = b"LWNP";
 const VERSION: u32 = 1;
@@ -49,7 +60,7 @@ pub struct StartSet {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum StartSetError {
     /// The bytes do not begin as such a file does.
-    #[error("this is no nine-point start set of version {VERSION}")]
+    #[error("this is no start set of exact synthesis of version {VERSION}")]
     Header,
     /// The number of bytes is wrong.
     #[error("a start set of {classes} classes has {wanted} bytes, not {found}")]
@@ -67,20 +78,22 @@ pub enum StartSetError {
 }
 
 impl StartSet {
-    /// Returns the embedded set, which is read once. A test checks that the file is whole.
+    /// Returns the embedded set of targets with so many poses beyond the first, which is read once. A test checks that the
+    /// files are whole.
     ///
     /// # Panics
-    /// When the bytes within the program are damaged: an empty set would pass for "no linkage goes through the points".
-    pub fn embedded() -> &'static StartSet {
-        static SET: OnceLock<StartSet> = OnceLock::new();
-        once(&SET, || StartSet::built_in(EMBEDDED))
+    /// When the bytes within the program are damaged: an empty set would pass for "no linkage goes through the points". When
+    /// `poses` is above [`MOST_POSES`].
+    pub fn embedded(poses: usize) -> &'static StartSet {
+        static SETS: [OnceLock<StartSet>; MOST_POSES + 1] = [const { OnceLock::new() }; MOST_POSES + 1];
+        once(&SETS[poses], || StartSet::built_in(EMBEDDED[poses]))
     }
 
     /// Reads the set within the program.
     fn built_in(bytes: &[u8]) -> StartSet {
         match StartSet::parse(bytes) {
             Ok(set) => set,
-            Err(why) => panic!("the nine-point start set within the program is damaged: {why}"),
+            Err(why) => panic!("a start set within the program is damaged: {why}"),
         }
     }
 
@@ -91,7 +104,11 @@ impl StartSet {
     /// When the bytes are no such file or an entry is no solution.
     pub fn parse(bytes: &[u8]) -> Result<StartSet, StartSetError> {
         let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..at + 4)?.first_chunk()?));
-        if bytes.get(..4) != Some(MAGIC) || word(4) != Some(VERSION) || word(12) != Some(0) {
+        if bytes.get(..4) != Some(MAGIC) || word(4) != Some(VERSION) {
+            return Err(StartSetError::Header);
+        }
+        let poses = word(12).ok_or(StartSetError::Header)? as usize;
+        if poses > MOST_POSES {
             return Err(StartSetError::Header);
         }
         let classes = word(8).ok_or(StartSetError::Header)? as usize;
@@ -107,6 +124,7 @@ impl StartSet {
         let displacements = Displacements {
             delta: std::array::from_fn(|j| number(&doubles, j)),
             starred: std::array::from_fn(|j| number(&doubles, STEPS + j)),
+            poses,
         };
         let rough: Vec<Solution> = singles
             .chunks_exact(2 * ORDER)
@@ -132,10 +150,15 @@ const NEWTON_STEPS: usize = 5;
 
 /// Computes the T_j that pivots imply: x beta T^2 + (x x* + alpha beta - U V) T + alpha x* = 0 with
 /// alpha = delta_j - a, beta = delta*_j - a*, for either leg. Of the roots of both legs the pair that is nearest to
-/// being one is taken.
+/// being one is taken. The T_j of a pose is given.
 fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
     let mut answer = pivots;
-    for j in 0..STEPS {
+    for pose in 0..at.poses {
+        let own = at.len() + pose;
+        let turn = at.delta[own] / at.starred[own];
+        (answer.rotations[at.points() + pose], answer.rotations[own]) = (turn, turn);
+    }
+    for j in 0..at.points() {
         let roots: [[Complex; 2]; 2] = std::array::from_fn(|leg| {
             let (x, a) = (pivots.pins[leg], pivots.grounds[leg]);
             let (x_s, a_s) = (pivots.pins_starred[leg], pivots.grounds_starred[leg]);
@@ -166,7 +189,8 @@ mod tests {
 
     #[test]
     fn a_damaged_set_within_the_program_is_our_own_bug_and_never_an_empty_list() {
-        for damaged in [&EMBEDDED[..EMBEDDED.len() - 1], &EMBEDDED[1..], &[][..]] {
+        let whole = EMBEDDED[0];
+        for damaged in [&whole[..whole.len() - 1], &whole[1..], &[][..]] {
             let made = std::panic::catch_unwind(|| StartSet::built_in(damaged));
             assert!(made.is_err(), "{} bytes", damaged.len());
         }

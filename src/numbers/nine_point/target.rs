@@ -1,26 +1,66 @@
-//! The problem, nine precision points, and its answer, a solution of the sixteen equations.
+//! The problem, precision points and poses, and its answer, a solution of the sixteen equations.
 
 use linkwright_arithmetic::Complex;
 use thiserror::Error;
 
-/// The number of precision points beyond the first.
+/// The number of precision points beyond the first, where there are no poses.
 pub const STEPS: usize = 8;
+/// The largest number of poses beyond the first.
+pub const MOST_POSES: usize = STEPS / 2;
 
-/// delta_j = P_j - P_0 and their starred twins, j = 1 .. 8: the equations depend on nothing else of a target. Only
-/// real points have delta*_j = conj(delta_j); a path from target to target through complex numbers has not.
+/// delta_j = P_j - P_0 and their starred twins: the equations depend on nothing else of a target. Only real targets have
+/// delta*_j = conj(delta_j); a path from target to target through complex numbers has not.
+///
+/// With `poses` = p there are n = 8 - 2 p points, in the places 0 .. n, then the p poses, in the places n .. n + p, then,
+/// in the last p places, the turn of each pose from the first as a quotient: T = delta / starred. A real target has a
+/// number w there and its conjugate, so that |T| = 1 without rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Displacements<Z = Complex> {
-    /// The displacements delta_j.
+    /// The displacements delta_j, and the numerators of the turns.
     pub delta: [Z; STEPS],
-    /// Their starred twins delta*_j.
+    /// Their starred twins delta*_j, and the denominators of the turns.
     pub starred: [Z; STEPS],
+    /// The number of poses beyond the first.
+    pub poses: usize,
+}
+
+impl<Z> Displacements<Z> {
+    /// Returns the number of points beyond the first pose.
+    #[inline(always)]
+    pub fn points(&self) -> usize {
+        STEPS - 2 * self.poses
+    }
+
+    /// Returns the number of displacements: of points and of poses.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        STEPS - self.poses
+    }
+
+    /// Returns whether there are no displacements, which never is so.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
 }
 
 impl<Z: Copy> Displacements<Z> {
     /// Returns the values of a function of each displacement.
     #[inline(always)]
     pub fn map<Y>(&self, of: impl Fn(Z) -> Y) -> Displacements<Y> {
-        Displacements { delta: self.delta.map(&of), starred: self.starred.map(&of) }
+        Displacements { delta: self.delta.map(&of), starred: self.starred.map(&of), poses: self.poses }
+    }
+
+    /// Returns delta multiplied by `by` and delta* by `by_starred`; turns have no unit.
+    pub fn in_other_units(&self, by: Z, by_starred: Z) -> Self
+    where
+        Z: std::ops::Mul<Output = Z>,
+    {
+        let mut other = *self;
+        for j in 0..self.len() {
+            other.delta[j] = self.delta[j] * by;
+            other.starred[j] = self.starred[j] * by_starred;
+        }
+        other
     }
 
     /// Returns the values of a function of each displacement and the one in its place among `others`.
@@ -29,19 +69,23 @@ impl<Z: Copy> Displacements<Z> {
         Displacements {
             delta: both(&self.delta, &others.delta),
             starred: both(&self.starred, &others.starred),
+            poses: self.poses,
         }
     }
 }
 
-/// Nine precision points, scaled by a power of two so that the farthest from the first is at a distance above 1/2 and
-/// at most 1.
+/// Nine precision points, or points and poses, scaled by a power of two so that the farthest from the first is at a
+/// distance above 1/2 and at most 1.
 ///
 /// As the scale is a power of two, scaling rounds nothing: a proof for the scaled points holds for the points as
 /// given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// The points as given, in the order in which the path passes them.
+    /// The points as given, in the order in which the path passes them. With poses: the first pose, the points, the other
+    /// poses, and zeros in the places of their turns.
     pub points: [Complex; STEPS + 1],
+    /// For each pose beyond the first a number w with w / w* = e^{i theta}, theta its turn from the first pose.
+    pub half_turns: [Complex; MOST_POSES],
     /// The length, in units of the points, of one unit of a [`Solution`]: the least power of two that is not below
     /// max_j |P_j - P_0|.
     pub scale: f64,
@@ -49,7 +93,7 @@ pub struct Target {
     pub displacements: Displacements,
 }
 
-/// The reason for which nine points are no target.
+/// The reason for which points and poses are no target.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum TargetError {
     /// A coordinate is not a finite number.
@@ -72,6 +116,14 @@ pub enum TargetError {
         first: usize,
         /// Number of the second point, from one.
         second: usize,
+    },
+    /// The number of points and poses is not one that has a finite number of answers.
+    #[error("{points} points and {poses} poses: twice the poses and the points must make ten")]
+    Number {
+        /// The number of points without an angle.
+        points: usize,
+        /// The number of poses, the first included.
+        poses: usize,
     },
 }
 
@@ -96,25 +148,73 @@ impl Target {
     /// When a coordinate is not finite, two points coincide, or the points extend over more than 1e200 or less than
     /// 1e-200.
     pub fn new(points: [Complex; STEPS + 1]) -> Result<Self, TargetError> {
-        for (at, point) in points.iter().enumerate() {
-            if !(point.re.is_finite() && point.im.is_finite()) {
-                return Err(TargetError::NotFinite { point: at + 1 });
-            }
+        Self::of(points, [Complex::ZERO; MOST_POSES], 0)
+    }
+
+    /// Creates the target of a first pose, of points, and of poses, each with its turn from the first, radians: five poses,
+    /// or 4, 3, 2 with 2, 4, 6 points.
+    ///
+    /// # Errors
+    ///
+    /// When the numbers of points and poses are others, a number is not finite, two points coincide, or two poses do, or a
+    /// point and a pose, or all lie within 1e-200, or extend over more than 1e200.
+    pub fn with_poses(
+        first: Complex,
+        points: &[Complex],
+        poses: &[(Complex, f64)],
+    ) -> Result<Self, TargetError> {
+        if points.len() + 2 * poses.len() != STEPS {
+            return Err(TargetError::Number { points: points.len(), poses: poses.len() + 1 });
         }
-        let size = points.iter().map(|p| (p - points[0]).norm()).fold(0.0, f64::max);
-        if size > 0.0 && !EXTENTS.contains(&size) {
+        let (mut all, mut half_turns) = ([Complex::ZERO; STEPS + 1], [Complex::ZERO; MOST_POSES]);
+        let places = points.iter().copied().chain(poses.iter().map(|pose| pose.0));
+        for (place, given) in all.iter_mut().zip(std::iter::once(first).chain(places)) {
+            *place = given;
+        }
+        for (half, (_, angle)) in half_turns.iter_mut().zip(poses) {
+            *half = Complex::from_polar(1.0, 0.5 * angle.rem_euclid(std::f64::consts::TAU));
+        }
+        Self::of(all, half_turns, poses.len())
+    }
+
+    fn of(
+        points: [Complex; STEPS + 1],
+        half_turns: [Complex; MOST_POSES],
+        poses: usize,
+    ) -> Result<Self, TargetError> {
+        let given = &points[..=STEPS - poses];
+        let is_finite = |z: &Complex| z.re.is_finite() && z.im.is_finite();
+        if let Some(at) = given.iter().position(|point| !is_finite(point)) {
+            return Err(TargetError::NotFinite { point: at + 1 });
+        }
+        // Of the first pose, of points, of poses.
+        let turn = |at: usize| match (at, at.checked_sub(1 + STEPS - 2 * poses)) {
+            (0, _) if poses > 0 => Some(Complex::ONE),
+            (_, Some(pose)) => Some(half_turns[pose] / half_turns[pose].conj()),
+            _ => None,
+        };
+        if let Some(at) = (0..given.len()).find(|at| turn(*at).is_some_and(|turn| !is_finite(&turn))) {
+            return Err(TargetError::NotFinite { point: at + 1 });
+        }
+        let size = given.iter().map(|p| (p - points[0]).norm()).fold(0.0, f64::max);
+        if (size > 0.0 || poses == MOST_POSES) && !EXTENTS.contains(&size) {
             return Err(TargetError::Extent { size });
         }
-        for second in 1..points.len() {
+        for second in 1..given.len() {
             for first in 0..second {
-                if (points[second] - points[first]).norm() <= COINCIDENT * size {
+                let turned = turn(first).zip(turn(second)).is_some_and(|(a, b)| (a - b).norm() > COINCIDENT);
+                if !turned && (points[second] - points[first]).norm() <= COINCIDENT * size {
                     return Err(TargetError::Coincident { first: first + 1, second: second + 1 });
                 }
             }
         }
         let scale = power_of_two_above(size);
-        let delta: [Complex; STEPS] = std::array::from_fn(|j| (points[j + 1] - points[0]) / scale);
-        Ok(Target { points, scale, displacements: Displacements { delta, starred: delta.map(|d| d.conj()) } })
+        let delta: [Complex; STEPS] = std::array::from_fn(|j| match j.checked_sub(STEPS - poses) {
+            Some(pose) => half_turns[pose],
+            None => (points[j + 1] - points[0]) / scale,
+        });
+        let displacements = Displacements { delta, starred: delta.map(|d| d.conj()), poses };
+        Ok(Target { points, half_turns, scale, displacements })
     }
 }
 

@@ -1,10 +1,10 @@
-//! The linkages through nine points: the census in words, the linkages in a table.
+//! The linkages through nine points, or poses and points: the census in words, the linkages in a table.
 
 use super::data::MOST_EXACT;
 use super::page::{paragraph, section};
 use super::table::{Cell, Column, tabulated};
-use crate::record::{ExactLinkage, Record};
-use crate::report::exact::{ability, defects, others, said};
+use crate::record::{ExactLinkage, ExactRecord, Record};
+use crate::report::exact::{ability, best_of, defects, others, said, title};
 use crate::report::text::{grouped, significant};
 use crate::report::words;
 use maud::{Markup, html};
@@ -16,10 +16,10 @@ pub(super) fn exact(record: &Record) -> Markup {
         @for sentence in said(record, exact) { (paragraph("", &sentence)) }
         @if !exact.linkages.is_empty() {
             (table(record, &exact.linkages))
-            (paragraph("notes", &notes(exact.linkages.len())))
+            (paragraph("notes", &notes(exact)))
         }
     };
-    section("exact", "Every linkage through the nine points", inside)
+    section("exact", &title(exact), inside)
 }
 
 fn table(record: &Record, linkages: &[ExactLinkage]) -> Markup {
@@ -45,10 +45,12 @@ fn table(record: &Record, linkages: &[ExactLinkage]) -> Markup {
     tabulated(("Exact linkages", "sortable wide tight"), ("#", true), &columns, rows)
 }
 
-fn notes(linkages: usize) -> String {
-    let mut notes = String::from(
-        "the curve can be: what the best of its six mechanisms (three cognates, either link driven) can do. defects, \
-         transmission, ratio: of the one listed. proved within: one exact linkage is proved to stand this near.",
+fn notes(exact: &ExactRecord) -> String {
+    let linkages = exact.linkages.len();
+    let mut notes = format!(
+        "the curve can be: what {} can do. defects, transmission, ratio: of the one listed. proved within: one exact \
+         linkage is proved to stand this near.",
+        best_of(exact)
     );
     if linkages > MOST_EXACT {
         let more = grouped((linkages - MOST_EXACT) as u64);

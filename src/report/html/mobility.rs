@@ -5,7 +5,7 @@ use crate::mechanism::four_bar::transmission::ForceTransmission;
 use crate::mechanism::{InputRange, LinkageType};
 use crate::record::{Candidate, Record};
 use crate::report::text::{brief, capitalised, significant};
-use crate::report::{table, words};
+use crate::report::{exact, table, words};
 use crate::task::spec::TransmissionOver;
 use maud::Markup;
 
@@ -31,7 +31,8 @@ pub(super) fn mobility(record: &Record, c: &Candidate) -> Markup {
     if let Some(proof) = c.certified {
         let unit = words::unit_suffix(record);
         said.push(format!(
-            "Proved: one linkage, and only one, passes exactly through all nine points within {}{unit} of this one.",
+            "Proved: one linkage, and only one, passes exactly through all {} within {}{unit} of this one.",
+            record.exact.as_ref().map_or("nine points", exact::targets),
             significant(proof.radius, 2)
         ));
     }

@@ -1,4 +1,4 @@
-//! Live exact synthesis for nine points that the user moves: every real linkage through them, followed from the
+//! Live exact synthesis for nine points, or poses and points, that the user moves: every real linkage through them, followed from the
 //! solutions before by continuation.
 
 use crate::judge::certified::target;
@@ -17,20 +17,23 @@ impl Nine {
     /// Returns all real linkages through the points of a problem, judged by its requirements, better first; from the
     /// solutions before if there are any ([`resolve_from`]), else from the start set ([`solve()`]). Nothing is
     /// certified, and no distance to a whole curve is computed ([`glanced`]): that is left to a run. `None` if the
-    /// problem does not have nine precision points, or it was cancelled.
+    /// problem does not have as many points and poses as have finitely many linkages, or it was cancelled.
     pub fn follow(&mut self, problem: &Problem, cancel: &AtomicBool) -> Option<Exact> {
-        let target = target(problem)?;
+        let precise = target(problem)?;
+        let target = precise.target;
         let options = Options::default();
         let solved = match self.solved.take() {
             // Only a requirement has changed, not a point.
             Some(before) if before.target == target => before,
-            Some(before) => resolve_from(&before, &target, &options, cancel).solved,
-            None => solve(&target, &options, &|_, _| {}, cancel),
+            Some(before) if before.target.displacements.poses == target.displacements.poses => {
+                resolve_from(&before, &target, &options, cancel).solved
+            }
+            _ => solve(&target, &options, &|_, _| {}, cancel),
         };
         if cancel.load(Ordering::Relaxed) || solved.cancelled {
             return None;
         }
-        let exact = glanced(problem, &solved);
+        let exact = glanced(problem, &precise, &solved);
         // Points in special position lose classes: after that the start set is needed again.
         self.solved = (solved.completeness() == Completeness::Complete).then_some(solved);
         Some(exact)

@@ -1,20 +1,43 @@
-//! Exact problems: paths of nine precision points with free timing.
+//! Exact problems: paths of nine precision points, and motions of as many poses and points as a four-bar can meet, with
+//! free timing.
 //!
 //! Nine is the largest number of points that a four-bar's coupler curve can be made to pass through: a linkage has nine
-//! parameters, and each point with a crank angle of its own takes one of them. Fewer points leave a family, more have
-//! no exact answer in general, and with prescribed timing only five points can be met.
+//! parameters, and each point with a crank angle of its own takes one of them. A body on the coupler adds its angle there,
+//! and a pose takes two: M poses and N points have finitely many answers if 2 M + N = 10 (the Alt-Burmester problems).
+//! Fewer leave a family, more have no exact answer in general, and with prescribed timing only five points can be met.
 
 use crate::mechanism::Complex;
+use crate::numbers::nine_point::{Target, TargetError};
 use crate::task::{Problem, Timing};
+use std::f64::consts::{PI, TAU};
 
 /// The largest number of points that a coupler curve can be made to pass through.
 pub const PRECISION_POINTS: usize = 9;
 
-/// Distance, in parts of the target's size, below which points are one point.
+/// Twice the number of poses and the number of points that a body on the coupler can be made to pass through.
+pub const PRECISION_ROWS: usize = 10;
+
+/// Distance, in parts of the target's size, and angle, radians, below which points and poses are one.
 const COINCIDENT: f64 = 1e-9;
 
+/// An exact problem as its solver takes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Precise {
+    /// The points and poses, the first pose before all others.
+    pub target: Target,
+    /// For each target of the task, in its order, its place among the target's points.
+    pub places: Vec<usize>,
+}
+
+impl From<Target> for Precise {
+    /// Takes nine points, or a target whose task has its points and poses in the same order.
+    fn from(target: Target) -> Precise {
+        Precise { places: (0..=target.displacements.len()).collect(), target }
+    }
+}
+
 /// The reason why a problem has no exact answers to list.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// The path does not have nine points.
     #[error("method = \"continuation\" finds linkages through exactly 9 points, this path has {points}")]
@@ -22,17 +45,28 @@ pub enum Refusal {
         /// Number of points.
         points: usize,
     },
-    /// The targets are poses.
-    #[error("method = \"continuation\" finds linkages through exactly 9 points, and this task has poses")]
-    Motion,
+    /// The targets have not as many poses and points as have finitely many answers.
+    #[error(
+        "method = \"continuation\" finds linkages through 5 poses, or through 4, 3 or 2 poses with 2, 4 or 6 points; this \
+         task has {poses} with an angle and {points} without"
+    )]
+    Motion {
+        /// Number of targets with an angle.
+        poses: usize,
+        /// Number of targets without one.
+        points: usize,
+    },
+    /// The targets are pairs of angles.
+    #[error("method = \"continuation\" finds linkages through points and poses, and this task is a function")]
+    Function,
     /// The crank angles are given.
     #[error(
         "crank angles cannot be prescribed with method = \"continuation\": nine points take all the freedom"
     )]
     Timed,
-    /// Two points coincide.
+    /// Two points coincide, two poses, or a point and a pose.
     #[error(
-        "points {first} and {second} are one point, and method = \"continuation\" needs 9 different ones"
+        "targets {first} and {second} are at one place, and method = \"continuation\" needs different ones"
     )]
     Coincident {
         /// Index of the one, counted from 0.
@@ -40,6 +74,9 @@ pub enum Refusal {
         /// Index of the other, counted from 0.
         second: usize,
     },
+    /// The coordinates are out of the range of the computation.
+    #[error(transparent)]
+    Numbers(#[from] TargetError),
 }
 
 impl Refusal {
@@ -52,33 +89,68 @@ impl Refusal {
             Refusal::Points { .. } => {
                 "give 9 points, or write method = \"auto\": more points can only be approached"
             }
-            Refusal::Motion => "write method = \"auto\"; five poses are met exactly without it",
+            Refusal::Motion { poses, points } if 2 * poses + points < PRECISION_ROWS => {
+                "add targets, or write method = \"auto\": fewer leave a whole family of exact linkages"
+            }
+            Refusal::Motion { .. } => "write method = \"auto\": more targets can only be approached",
+            Refusal::Function => "write method = \"auto\": up to five pairs are met exactly by it",
+            Refusal::Numbers(_) => "choose another unit, or write method = \"auto\"",
             Refusal::Timed => "remove the crank angles, or write method = \"auto\" and keep them",
             Refusal::Coincident { .. } => "move one of the two, or write method = \"auto\"",
         }
     }
 }
 
-/// Returns the nine points of a problem that has exact answers.
+/// Returns the points and poses of a problem that has exact answers.
 ///
 /// # Errors
 /// [`Refusal`]: the reason why it has none.
-pub fn precision_points(problem: &Problem) -> Result<[Complex; PRECISION_POINTS], Refusal> {
+pub fn precise(problem: &Problem) -> Result<Precise, Refusal> {
     let task = problem.task();
-    if task.body().is_some() {
-        return Err(Refusal::Motion);
+    if problem.is_function() {
+        return Err(Refusal::Function);
     }
     if !matches!(task.timing(), Timing::Free) {
         return Err(Refusal::Timed);
     }
-    let refusal = Refusal::Points { points: task.len() };
-    let points: [Complex; PRECISION_POINTS] = task.points().try_into().map_err(|_| refusal)?;
-    for second in 1..PRECISION_POINTS {
+    let points = task.points();
+    let angles: Vec<Option<f64>> =
+        task.body().map_or_else(|| vec![None; points.len()], |body| body.angles.clone());
+    let poses: Vec<usize> = (0..points.len()).filter(|j| angles[*j].is_some()).collect();
+    let free: Vec<usize> = (0..points.len()).filter(|j| angles[*j].is_none()).collect();
+    if poses.is_empty() && points.len() != PRECISION_POINTS {
+        return Err(Refusal::Points { points: points.len() });
+    }
+    if !poses.is_empty() && 2 * poses.len() + free.len() != PRECISION_ROWS {
+        return Err(Refusal::Motion { poses: poses.len(), points: free.len() });
+    }
+    for second in 1..points.len() {
         for first in 0..second {
-            if (points[second] - points[first]).norm() <= COINCIDENT * task.size() {
+            let turned = angles[first].zip(angles[second]).is_some_and(|(one, other)| {
+                let apart = (other - one).rem_euclid(TAU);
+                PI - (apart - PI).abs() > COINCIDENT
+            });
+            if !turned && (points[second] - points[first]).norm() <= COINCIDENT * task.size() {
                 return Err(Refusal::Coincident { first, second });
             }
         }
     }
-    Ok(points)
+    // The first pose, or the first point where there is none, then the points, then the other poses.
+    let first = poses.first().copied().unwrap_or(0);
+    let order: Vec<usize> = std::iter::once(first)
+        .chain(free)
+        .chain(poses)
+        .enumerate()
+        .filter_map(|(at, j)| (at == 0 || j != first).then_some(j))
+        .collect();
+    let mut places = vec![0; points.len()];
+    for (place, j) in order.iter().enumerate() {
+        places[*j] = place;
+    }
+    let others = || order[1..].iter().map(|j| (points[*j], angles[*j].zip(angles[first])));
+    let of_points: Vec<Complex> = others().filter(|o| o.1.is_none()).map(|o| o.0).collect();
+    let of_poses: Vec<(Complex, f64)> =
+        others().filter_map(|(point, angles)| angles.map(|(own, first)| (point, own - first))).collect();
+    let target = Target::with_poses(points[first], &of_points, &of_poses)?;
+    Ok(Precise { target, places })
 }
