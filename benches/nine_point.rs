@@ -1,22 +1,26 @@
-//! Exact synthesis: how long nine points take, and how often everything is found.
+//! Exact synthesis: how long nine points take, or poses and points, and how often everything is found.
 //!
 //! ```text
-//! cargo bench --bench nine_point                     all four parts
+//! cargo bench --bench nine_point                     all five parts
 //! cargo bench --bench nine_point -- full             a full solve of problem 3 of 1992, on 1 and 2 threads,
 //!                                                 without and with certificates
 //! cargo bench --bench nine_point -- move             one point moved by 2 % of the size, a frame after the other, 1 thread
 //! cargo bench --bench nine_point -- targets 100      100 targets each: coupler curves, normal points, noisy ellipses
+//! cargo bench --bench nine_point -- poses 100        positions of 100 random linkages each: 5 poses, 4, 3, 2 and 2, 4, 6 points
 //! ```
 //!
 //! Every part asserts its answer before it prints a time. Times are medians of [`RUNS`] runs.
 
 #![expect(clippy::print_stdout, reason = "the tables are what this program is for")]
 
+#[path = "../tests/common/poses.rs"]
+mod poses;
 #[path = "../tests/common/random.rs"]
 mod random;
 
 use linkwright::internals::mechanism::{Complex, FourBar};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, normal, stream, uniform};
+use linkwright::internals::numbers::nine_point::start::CLASSES as GENERIC;
 use linkwright::internals::numbers::nine_point::{
     Certificate, Class, Completeness, Options, Reality, Solution, Solved, Target, certify_all,
     not_proved_distinct, resolve_from, solve,
@@ -200,6 +204,57 @@ fn targets(count: u64) {
     );
 }
 
+/// Solves positions of random linkages on one branch, without noise, some of them with the coupler's angle.
+fn with_poses(count: u64) {
+    for others in (1..=4).rev() {
+        let n = 9 - others;
+        let (mut complete, mut found, mut real, mut unproved) = (0, 0, 0, 0);
+        let (mut times, mut proofs) = (Vec::new(), Vec::new());
+        for index in 0..count {
+            let made = poses::taken(&mut stream(70 + others as u64, index), n, 0.0);
+            let (first, angle) = made.poses[0];
+            let points: Vec<Complex> = made.poses[1..n - others].iter().map(|pose| pose.0).collect();
+            let turned: Vec<(Complex, f64)> =
+                made.poses[n - others..].iter().map(|(place, own)| (*place, own - angle)).collect();
+            let target = Target::with_poses(first, &points, &turned).expect("different places");
+            let clock = Instant::now();
+            let answer = solve(&target, &Options::default(), &|_, _| {}, &AtomicBool::new(false));
+            times.push(clock.elapsed().as_secs_f64());
+            let solutions: Vec<Solution> = answer.classes.iter().map(|class| class.solution).collect();
+            let clock = Instant::now();
+            let proved = certify_all(&target, &solutions).iter().filter(|proof| proof.is_ok()).count();
+            proofs.push(clock.elapsed().as_secs_f64());
+            let whole = answer.census.distinct == GENERIC[others];
+            unproved += answer.census.distinct - proved;
+            if !whole {
+                println!("  {} poses {index}: {:?}, {:?}", others + 1, answer.census, answer.completeness());
+            }
+            complete += u64::from(whole);
+            real += answer.census.real;
+            let (crank_angle, assembly) = made.positions[0];
+            let joints = made.linkage.position_with(crank_angle, assembly).joints().expect("closed");
+            let there = holds(&answer, &made.linkage, [joints.crank_pin, joints.follower_pin]);
+            if !there {
+                println!("  {} poses {index}: its linkage was not found", others + 1);
+            }
+            found += u64::from(there);
+        }
+        println!(
+            "{} poses, {} points: all {} classes {complete} of {count}, the generating linkage {found}; {:.1} real ones; \
+             {unproved} without a certificate; median {:.2} ms, and {:.2} ms for certificates",
+            others + 1,
+            8 - 2 * others,
+            GENERIC[others],
+            real as f64 / count as f64,
+            1e3 * median(times),
+            1e3 * median(proofs)
+        );
+        assert_eq!(found, count);
+        assert!(unproved as u64 * 1000 <= GENERIC[others] as u64 * count);
+        assert!(complete * 100 >= if others == 1 { 97 } else { 100 } * count);
+    }
+}
+
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     let part = words.first().map_or("", String::as_str);
@@ -211,5 +266,8 @@ fn main() {
     }
     if part.is_empty() || part == "targets" {
         targets(words.get(1).map_or(100, |word| word.parse().expect("a number of targets")));
+    }
+    if part.is_empty() || part == "poses" {
+        with_poses(words.get(1).map_or(100, |word| word.parse().expect("a number of targets")));
     }
 }

@@ -263,7 +263,8 @@ pub enum Method {
     DifferentialEvolution,
     /// Levenberg-Marquardt from many starts.
     LeastSquares,
-    /// Every linkage through exactly nine points, by following the solutions of the equations from a known set.
+    /// Every linkage through exactly nine points, or through 5, 4, 3 or 2 poses and 0, 2, 4 or 6 points, by following the
+    /// solutions of the equations from a known set.
     Continuation,
 }
 
