@@ -20,7 +20,7 @@ mod random;
 
 use linkwright::internals::mechanism::{Complex, FourBar};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, normal, stream, uniform};
-use linkwright::internals::numbers::nine_point::start::CLASSES as GENERIC;
+use linkwright::internals::numbers::nine_point::target::Kind;
 use linkwright::internals::numbers::nine_point::{
     Certificate, Class, Completeness, Options, Reality, Solution, Solved, Target, certify_all,
     not_proved_distinct, resolve_from, solve,
@@ -207,7 +207,7 @@ fn targets(count: u64) {
 /// Solves positions of random linkages on one branch, without noise, some of them with the coupler's angle.
 fn with_poses(count: u64) {
     for others in (1..=4).rev() {
-        let n = 9 - others;
+        let (n, classes) = (9 - others, Kind { poses: others, pivots: 0 }.classes());
         let (mut complete, mut found, mut real, mut unproved) = (0, 0, 0, 0);
         let (mut times, mut proofs) = (Vec::new(), Vec::new());
         for index in 0..count {
@@ -216,7 +216,7 @@ fn with_poses(count: u64) {
             let points: Vec<Complex> = made.poses[1..n - others].iter().map(|pose| pose.0).collect();
             let turned: Vec<(Complex, f64)> =
                 made.poses[n - others..].iter().map(|(place, own)| (*place, own - angle)).collect();
-            let target = Target::with_poses(first, &points, &turned).expect("different places");
+            let target = Target::mixed(first, &points, &turned, &[]).expect("different places");
             let clock = Instant::now();
             let answer = solve(&target, &Options::default(), &|_, _| {}, &AtomicBool::new(false));
             times.push(clock.elapsed().as_secs_f64());
@@ -224,7 +224,7 @@ fn with_poses(count: u64) {
             let clock = Instant::now();
             let proved = certify_all(&target, &solutions).iter().filter(|proof| proof.is_ok()).count();
             proofs.push(clock.elapsed().as_secs_f64());
-            let whole = answer.census.distinct == GENERIC[others];
+            let whole = answer.census.distinct == classes;
             unproved += answer.census.distinct - proved;
             if !whole {
                 println!("  {} poses {index}: {:?}, {:?}", others + 1, answer.census, answer.completeness());
@@ -244,13 +244,13 @@ fn with_poses(count: u64) {
              {unproved} without a certificate; median {:.2} ms, and {:.2} ms for certificates",
             others + 1,
             8 - 2 * others,
-            GENERIC[others],
+            classes,
             real as f64 / count as f64,
             1e3 * median(times),
             1e3 * median(proofs)
         );
         assert_eq!(found, count);
-        assert!(unproved as u64 * 1000 <= GENERIC[others] as u64 * count);
+        assert!(unproved as u64 * 1000 <= classes as u64 * count);
         assert!(complete * 100 >= if others == 1 { 97 } else { 100 } * count);
     }
 }

@@ -1,13 +1,13 @@
 //! Makes a start set of exact synthesis from nothing and writes it to a file.
 //!
 //! ```text
-//! cargo run --release --example nine-point-start-set -- src/numbers/nine_point/start-set.bin [POSES [SEED]]
+//! cargo run --release --example nine-point-start-set -- src/numbers/nine_point/start-set.bin [POSES PIVOTS [SEED]]
 //! ```
 //!
-//! POSES is the number of poses beyond the first place: 0 (the default) for nine points, 1 to 4 for two to five poses with
-//! 6, 4, 2 and no points. Monodromy from one random complex four-bar until four loops in a row find no new class. It
-//! refuses to write a set that has not as many classes as are known ([`CLASSES`]) or does not come back whole from the
-//! file.
+//! POSES is the number of poses beyond the first place, PIVOTS that of given ground pivots: 0 0 (the default) for nine
+//! points, 3 0 for four poses and two points, 0 2 for five points and both pivots. Monodromy from one random complex
+//! four-bar until eight loops in a row find no new class, four of nine points. It refuses to write a set that has not as
+//! many classes as are known ([`Kind::classes`]), if that is known, or does not come back whole from the file.
 
 #![expect(clippy::print_stdout, reason = "it says what it found")]
 
@@ -17,14 +17,16 @@ use linkwright::internals::numbers::arithmetic::complex_lanes::ORDER;
 use linkwright::internals::numbers::arithmetic::streams::{stream, unit};
 use linkwright::internals::numbers::nine_point::classes::first_of_class;
 use linkwright::internals::numbers::nine_point::equations::unknowns;
-use linkwright::internals::numbers::nine_point::start::{CLASSES, StartSet};
-use monodromy::{Limits, orbit};
+use linkwright::internals::numbers::nine_point::start::StartSet;
+use linkwright::internals::numbers::nine_point::target::{Kind, MOST_POSES};
+use monodromy::{FEW, Limits, orbit};
 use std::sync::atomic::AtomicBool;
 
 /// Returns the bytes of a set's file, as `src/numbers/nine_point/start.rs` describes them.
 fn bytes_of(set: &StartSet) -> Vec<u8> {
     let mut bytes = b"LWNP".to_vec();
-    for word in [1, set.solutions.len() as u32, set.displacements.poses as u32] {
+    let kind = set.displacements.kind;
+    for word in [1, set.solutions.len() as u32, (kind.poses | kind.pivots << 16) as u32] {
         bytes.extend(word.to_le_bytes());
     }
     for z in set.displacements.delta.iter().chain(&set.displacements.starred) {
@@ -47,12 +49,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().ok_or("which file shall the start set be written to?")?;
     let poses: usize = arguments.next().map_or(Ok(0), |word| word.parse())?;
-    let classes = *CLASSES.get(poses).ok_or("at most four poses beyond the first")?;
+    let pivots: usize = arguments.next().map_or(Ok(0), |word| word.parse())?;
+    let kind = Kind { poses, pivots };
+    if pivots > 2 || poses + pivots > MOST_POSES {
+        return Err("at most two given pivots, and four of them and of the poses beyond the first".into());
+    }
     let seed: u64 = arguments.next().map_or(Ok(SEED), |word| word.parse())?;
-    let mut numbers = stream(seed, poses as u64);
-    let orbit = orbit(&mut || unit(&mut numbers), poses, &Limits::default(), &AtomicBool::new(false));
+    let mut numbers = stream(seed, (poses + 8 * pivots) as u64);
+    let (few, idle) = if kind == Kind::default() { (FEW, 4) } else { (0, 8) };
+    let limits = Limits { idle, ..Limits::default() };
+    let orbit = orbit(&mut || unit(&mut numbers), (kind, few), &limits, &AtomicBool::new(false));
     let found = orbit.solutions.len();
     println!("{found} classes in {} loops; the last {} found none", orbit.loops, orbit.idle);
+    let classes = match kind.classes() {
+        0 => found,
+        known => known,
+    };
     if found != classes {
         return Err(format!("{found} classes, not {classes}: try another seed").into());
     }

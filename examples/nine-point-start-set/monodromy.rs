@@ -5,13 +5,12 @@
 //! orbit. A loop leads from G straight to (u D, u* D*), D a random target, jumps by a change of units (the equations
 //! keep their form under delta -> m delta, delta* -> m* delta* with x, y, a, b -> m .., starred alike) to (v D, v*
 //! D*), and goes straight back. The images of a solution move as one, so that one of them is carried for all. Turns of
-//! poses have no unit; they move with the displacements.
+//! poses have no unit; they move with the displacements, as do given pivots.
 
 use linkwright::internals::numbers::arithmetic::Complex;
 use linkwright::internals::numbers::nine_point::classes::first_of_class;
 use linkwright::internals::numbers::nine_point::correction::correct;
-use linkwright::internals::numbers::nine_point::start::CLASSES;
-use linkwright::internals::numbers::nine_point::target::{Displacements, STEPS, Solution};
+use linkwright::internals::numbers::nine_point::target::{Displacements, Kind, STEPS, Solution};
 use linkwright::internals::numbers::nine_point::tracker::{Ending, Parameters, Segment, track};
 use std::sync::atomic::AtomicBool;
 
@@ -48,8 +47,8 @@ impl Default for Limits {
     }
 }
 
-/// The number of solutions below which a loop may well find no new one.
-const FEW: usize = 50;
+/// The number of solutions below which a loop may well find no new one, of nine points.
+pub const FEW: usize = 50;
 /// The tolerance within which two solutions are of one class.
 const SAME: f64 = 1e-6;
 
@@ -58,24 +57,27 @@ fn ring(uniform: Uniform) -> Complex {
     Complex::from_polar(0.5 + uniform(), std::f64::consts::TAU * uniform())
 }
 
-/// Draws a random complex four-bar and computes displacements that it solves, `poses` of them with a given turn.
+/// Draws a random complex four-bar and computes displacements that it solves.
 ///
 /// With random pivots and T_j each pair (delta_j, delta*_j) solves L_1 R_1 = c_1, L_2 R_2 = c_2, where L_2 = L_1 + d,
 /// R_2 = R_1 + d*: a quadratic in L_1.
-fn random_answer(uniform: Uniform, poses: usize) -> (Displacements, Solution) {
+fn random_answer(uniform: Uniform, kind: Kind) -> (Displacements, Solution) {
     let [x, y, a, b, x_s, y_s, a_s, b_s] = [(); 8].map(|()| ring(uniform));
     let mut rotations: [Complex; STEPS] = [(); STEPS].map(|()| ring(uniform));
     let (c_1, c_2) = ((x - a) * (x_s - a_s), (y - b) * (y_s - b_s));
     let mut displacements =
-        Displacements { delta: [Complex::default(); STEPS], starred: [Complex::default(); STEPS], poses };
-    let (points, len) = (displacements.points(), displacements.len());
-    for pose in 0..poses {
-        let turn = rotations[points + pose];
-        rotations[len + pose] = turn;
-        displacements.starred[len + pose] = ring(uniform);
-        displacements.delta[len + pose] = turn * displacements.starred[len + pose];
+        Displacements { delta: [Complex::default(); STEPS], starred: [Complex::default(); STEPS], kind };
+    for j in kind.lengths()..STEPS {
+        let [one, other] = kind.spare(j);
+        rotations[other] = rotations[one];
+        displacements.starred[j] = ring(uniform);
+        displacements.delta[j] = rotations[one] * displacements.starred[j];
     }
-    for (j, &t) in rotations.iter().enumerate().take(len) {
+    for link in 0..kind.pivots {
+        let entry = kind.places() + link;
+        (displacements.delta[entry], displacements.starred[entry]) = ([a, b][link], [a_s, b_s][link]);
+    }
+    for (j, &t) in rotations.iter().enumerate().take(kind.places()) {
         let (d, d_s) = ((y - x) * t - (b - a), (y_s - x_s) / t - (b_s - a_s));
         // c_1 + d* L + d R + d d* = c_2 with R = c_1 / L.
         let (half, product) = ((c_1 + d * d_s - c_2) / (d_s * 2.0), d * c_1 / d_s);
@@ -94,23 +96,23 @@ fn random_answer(uniform: Uniform, poses: usize) -> (Displacements, Solution) {
 }
 
 /// Draws random displacements of moderate size.
-fn random_displacements(uniform: Uniform, poses: usize) -> Displacements {
+fn random_displacements(uniform: Uniform, kind: Kind) -> Displacements {
     let mut draw = || [(); STEPS].map(|()| ring(uniform));
-    Displacements { delta: draw(), starred: draw(), poses }
+    Displacements { delta: draw(), starred: draw(), kind }
 }
 
 /// Tracks monodromy loops until a limit is reached.
 ///
-/// The first solution is tracked from the target that its linkage happens to solve to one of moderate size. `poses` of the
-/// places beyond the first are poses.
-pub fn orbit(uniform: Uniform, poses: usize, limits: &Limits, cancel: &AtomicBool) -> Orbit {
-    let (from, first) = random_answer(uniform, poses);
-    let home = random_displacements(uniform, poses);
+/// The first solution is tracked from the target that its linkage happens to solve to one of moderate size. `few` is the
+/// number of solutions below which a loop may well find no new one.
+pub fn orbit(uniform: Uniform, (kind, few): (Kind, usize), limits: &Limits, cancel: &AtomicBool) -> Orbit {
+    let (from, first) = random_answer(uniform, kind);
+    let home = random_displacements(uniform, kind);
     let solutions = arrived(&[first], &Segment { from, to: home }, cancel);
     let mut orbit = Orbit { displacements: home, solutions, loops: 0, idle: 0 };
     let stay = Segment { from: home, to: home };
     while orbit.loops < limits.loops && orbit.idle < limits.idle && orbit.solutions.len() < limits.enough {
-        let away = random_displacements(uniform, poses);
+        let away = random_displacements(uniform, kind);
         let [v, v_s] = [(); 2].map(|()| ring(uniform));
         let out = Segment { from: home, to: away };
         let back = Segment { from: away.in_other_units(v, v_s), to: home };
@@ -130,7 +132,7 @@ pub fn orbit(uniform: Uniform, poses: usize, limits: &Limits, cancel: &AtomicBoo
         orbit.loops += 1;
         // A loop of few solutions that finds no new one is no sign that all are found.
         let new = orbit.solutions.len() > known;
-        orbit.idle = if new || known < FEW.min(CLASSES[poses] / 2) { 0 } else { orbit.idle + 1 };
+        orbit.idle = if new || known < few { 0 } else { orbit.idle + 1 };
     }
     orbit
 }

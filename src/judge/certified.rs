@@ -3,6 +3,7 @@
 use super::rank::exact_sum_sq;
 use crate::judge::mechanisms::solution_of;
 use crate::mechanism::FourBar;
+use crate::numbers::nine_point::Solution;
 use crate::numbers::nine_point::certificate::{Certificate, certify};
 use crate::record::{Candidate, Certified};
 use crate::task::Problem;
@@ -50,14 +51,19 @@ pub fn certified(of: &Precise, candidate: &Candidate) -> Option<Certified> {
     let first = places.iter().position(|place| *place == 0)?;
     let joints = linkage.position_with(*angles.get(first)?, *candidate.t1_at.get(first)?).joints()?;
     let recorded = [linkage.crank_pivot(), linkage.follower_pivot(), joints.crank_pin, joints.follower_pin];
-    let refined = proof.refined.grounds.into_iter().chain(proof.refined.pins);
-    let apart = recorded.into_iter().zip(refined).map(|(recorded, refined)| {
-        let exact = target.points[0] + refined * target.scale;
-        let rounded = recorded.norm() + target.points[0].norm() + (refined * target.scale).norm();
-        (recorded - exact).norm() + ROUNDINGS * f64::EPSILON * rounded
-    });
+    let apart = |solution: Solution| {
+        let refined = solution.grounds.into_iter().chain(solution.pins);
+        let apart = recorded.into_iter().zip(refined).map(|(recorded, refined)| {
+            let exact = target.points[0] + refined * target.scale;
+            let rounded = recorded.norm() + target.points[0].norm() + (refined * target.scale).norm();
+            (recorded - exact).norm() + ROUNDINGS * f64::EPSILON * rounded
+        });
+        apart.fold(0.0, f64::max)
+    };
+    // The first link of a solution with a given pivot may be the follower.
+    let apart = apart(proof.refined).min(apart(proof.refined.swapped()));
     // Outward: the sums below are rounded as well.
-    let radius = (apart.fold(0.0, f64::max) + proof.radius * target.scale) * (1.0 + ROUNDINGS * f64::EPSILON);
+    let radius = (apart + proof.radius * target.scale) * (1.0 + ROUNDINGS * f64::EPSILON);
     radius.is_finite().then_some(Certified { radius })
 }
 

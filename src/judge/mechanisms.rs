@@ -2,7 +2,8 @@
 //!
 //! A class of solutions through points is one coupler curve. Three Roberts cognates draw it, and in each of them either of
 //! the two links on the ground can be driven: six mechanisms ([`Solution::cognate`], [`Solution::swapped`]). A cognate
-//! turns its coupler differently: where there are poses, the two links make two mechanisms.
+//! turns its coupler differently, and stands on other pivots: where there are poses, or both fixed pivots are given, the two
+//! links make two mechanisms; where one is given and there are no poses, two cognates have it, which make four.
 //!
 //! The driven link (x, a) has its pivot at A = P_0 + a and its pin at C_j = P_j + T_j x when the coupler point is at
 //! P_j: the crank angles and the assembly at each target follow directly, without a search.
@@ -115,7 +116,7 @@ impl Real {
             return None;
         }
         let far = pivots.iter().chain(&target.points).map(|z| z.norm()).fold(0.0, f64::max);
-        let points = target.displacements.points();
+        let points = target.displacements.kind.points();
         let first = places.iter().position(|place| *place == 0)?;
         let along = linkage.position_with(crank_angles[first], assemblies[first]).joints();
         let along = along.map(|joints| joints.follower_pin - joints.crank_pin)?;
@@ -154,20 +155,17 @@ impl Real {
 /// Returns the mechanisms of a real solution, cognate by cognate, the first link driven before the second; fewer if one has
 /// a link of no length. `task` is that of the points and poses.
 pub fn mechanisms(task: &Task, of: &Precise, solution: &Solution) -> Vec<Mechanism> {
-    let displacements = &of.target.displacements;
-    let cognates = if displacements.poses == 0 { 3 } else { 1 };
-    let mut form = *solution;
-    let mut list = Vec::with_capacity(2 * cognates);
-    for _ in 0..cognates {
+    let mut list = Vec::with_capacity(6);
+    for form in solution.cognates(&of.target.displacements) {
         let real = Real::of(&form);
         list.extend((0..2).filter_map(|driven| real.mechanism(task, of, driven)));
-        form = form.cognate(displacements);
     }
     list
 }
 
 /// Computes the solution that belongs to a linkage at its positions, the inverse of building a [`Mechanism`], with
-/// its crank as the first link; `None` if the loop is open at a point.
+/// its crank as the first link, or its follower where that stands on the first given pivot; `None` if the loop is open at
+/// a point.
 pub fn solution_of(
     of: &Precise,
     linkage: &FourBar,
@@ -193,19 +191,30 @@ pub fn solution_of(
     let grounds = [linkage.crank_pivot(), linkage.follower_pivot()].map(relative);
     let along = first.follower_pin - first.crank_pin;
     let mut rotations = [Complex::new(1.0, 0.0); STEPS];
-    let displacements = &target.displacements;
-    for (step, rotation) in rotations.iter_mut().enumerate() {
-        // The place of a pose's turn has the pose's rotation.
-        let step = if step < displacements.len() { step } else { step - displacements.poses };
+    let kind = target.displacements.kind;
+    for (entry, rotation) in rotations.iter_mut().enumerate() {
+        // The entry of a pose's turn has the pose's rotation; those of given pivots have none.
+        let step = match entry {
+            place if place < kind.places() => place,
+            turn if turn >= kind.lengths() && turn < kind.turn(kind.poses) => {
+                turn - kind.lengths() + kind.points()
+            }
+            _ => continue,
+        };
         let joints = joints(step + 1)?;
         let turned = (joints.follower_pin - joints.crank_pin) / along;
         *rotation = turned / turned.norm();
     }
-    Some(Solution {
+    let solution = Solution {
         pins,
         grounds,
         pins_starred: pins.map(|z| z.conj()),
         grounds_starred: grounds.map(|z| z.conj()),
         rotations,
-    })
+    };
+    let other = kind.pivots > 0 && {
+        let given = target.displacements.delta[kind.places()];
+        (grounds[1] - given).norm() < (grounds[0] - given).norm()
+    };
+    Some(if other { solution.swapped() } else { solution })
 }

@@ -2,30 +2,23 @@
 //! counted, and the real ones listed.
 
 use crate::mechanism::{AssemblyMode, FourBar, LinkageType};
+use crate::numbers::nine_point::target::Kind;
 use crate::task::Defect;
 use serde::{Deserialize, Serialize};
 
 /// So many classes pass through nine points in general position: C. W. Wampler, A. P. Morgan, A. J. Sommese (1992).
 pub const GENERIC_CLASSES: usize = 1442;
 
-/// Returns the number of classes of targets in general position, `poses` of them poses and the others points.
-///
-/// Two, three and four poses: D. A. Brake, J. D. Hauenstein, A. P. Murray, D. H. Myszka, C. W. Wampler (2016). Five: four
-/// dyads, in pairs. One pose among points asks for no more than a point does.
-pub fn generic_classes(poses: usize) -> usize {
-    match poses {
-        0 | 1 => GENERIC_CLASSES,
-        2 => 1112,
-        3 => 201,
-        4 => 30,
-        _ => 6,
-    }
+/// Returns the number of classes of targets in general position, `poses` of them poses and the others points, where
+/// `pivots` of the fixed pivots are given. One pose among points asks for no more than a point does.
+pub fn generic_classes(poses: usize, pivots: usize) -> usize {
+    Kind { poses: poses.saturating_sub(1), pivots }.classes()
 }
 
 /// What the exact solution of a problem found.
 ///
 /// A class is one coupler curve through nine points: three cognates with two labels of their links. Where there are poses it
-/// is one linkage, with two labels: cognates turn the coupler differently. That each linkage
+/// is one linkage, with two labels: cognates turn the coupler differently. So it is where a fixed pivot is given. That each linkage
 /// marked as certified exists is proved; that no others do is not: that rests on the published count
 /// ([`generic_classes`]) for targets in general position.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -33,6 +26,9 @@ pub struct ExactRecord {
     /// The number of poses among the targets.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub poses: usize,
+    /// The number of fixed pivots that the problem gives.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub pivots: usize,
     /// How the solutions are counted.
     pub census: Census,
     /// Whether as many classes were found as points in general position have.
@@ -43,7 +39,7 @@ pub struct ExactRecord {
     pub linkages: Vec<ExactLinkage>,
 }
 
-/// Whether there are none: that of a path is not written.
+/// Whether there are none, which is not written.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
 fn is_zero(n: &usize) -> bool {
     *n == 0

@@ -47,16 +47,25 @@ pub(super) fn said(record: &Record, exact: &ExactRecord) -> Vec<String> {
     said.into_iter().filter(|sentence| !sentence.is_empty()).collect()
 }
 
-/// Returns the poses and points in words: "nine points".
-pub fn targets(exact: &ExactRecord) -> &'static str {
-    match exact.poses {
-        0 => "nine points",
-        1 => "one pose and eight points",
-        2 => "two poses and six points",
-        3 => "three poses and four points",
-        4 => "four poses and two points",
-        _ => "five poses",
-    }
+/// Returns the poses and points in words, and whether fixed pivots are given: "nine points".
+pub fn targets(exact: &ExactRecord) -> String {
+    const NUMBERS: [&str; 10] =
+        ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];
+    let ExactRecord { poses, pivots, .. } = *exact;
+    let free = if poses == 0 { 9 } else { 10 - 2 * poses.min(5) };
+    let points = free - (2 * pivots).min(free);
+    let counted = |n: usize, noun: &str| {
+        (n > 0).then(|| format!("{} {noun}{}", NUMBERS[n.min(9)], if n == 1 { "" } else { "s" }))
+    };
+    let parts: Vec<String> =
+        [counted(poses, "pose"), counted(points, "point")].into_iter().flatten().collect();
+    let given = ["", " with one fixed pivot given", " with both fixed pivots given"][pivots.min(2)];
+    parts.join(" and ") + given
+}
+
+/// Returns whether the solutions are those through points alone, which come with cognates.
+fn has_cognates(exact: &ExactRecord) -> bool {
+    exact.poses == 0 && exact.pivots == 0
 }
 
 /// Returns the heading of the list.
@@ -66,16 +75,20 @@ pub(super) fn title(exact: &ExactRecord) -> String {
 
 /// Returns what a class is listed by.
 pub(super) fn best_of(exact: &ExactRecord) -> &'static str {
-    if exact.poses == 0 {
-        "the best of its six mechanisms (three cognates, either link driven)"
-    } else {
-        "the better of its two mechanisms (either link driven)"
+    match (exact.poses, exact.pivots) {
+        (0, 0) => "the best of its six mechanisms (three cognates, either link driven)",
+        (0, 1) => "the best of its four mechanisms (two cognates with that pivot, either link driven)",
+        _ => "the better of its two mechanisms (either link driven)",
     }
 }
 
 /// Returns up to what solutions are counted once.
 fn up_to(exact: &ExactRecord) -> &'static str {
-    if exact.poses == 0 { "up to cognates" } else { "up to the order of the two links" }
+    match (exact.poses, exact.pivots) {
+        (0, 0 | 1) => " up to cognates",
+        (_, 0) => " up to the order of the two links",
+        _ => "",
+    }
 }
 
 /// Returns one plain sentence instead of a census if the points are in special position and no solution was found.
@@ -90,7 +103,7 @@ pub fn none_through(record: &Record) -> Option<String> {
         "the candidates come near"
     };
     let all = targets(exact);
-    Some(if exact.poses == 0 && on_one_line(&record.problem.resolved.task.points) {
+    Some(if has_cognates(exact) && on_one_line(&record.problem.resolved.task.points) {
         format!(
             "The nine points lie on one line, and a coupler curve meets a line in at most six points: no linkage passes \
              through all nine; {nearest}."
@@ -99,7 +112,7 @@ pub fn none_through(record: &Record) -> Option<String> {
         format!(
             "The {all} are non-generic (in special position), and no linkage through all of them was found ({all} in general \
              position have {} solutions): {nearest}.",
-            count(generic_classes(exact.poses))
+            count(generic_classes(exact.poses, exact.pivots))
         )
     })
 }
@@ -129,20 +142,20 @@ fn count(n: usize) -> String {
 fn found(exact: &ExactRecord) -> String {
     let census = &exact.census;
     let found = count(census.classes);
-    let all = count(generic_classes(exact.poses));
+    let all = count(generic_classes(exact.poses, exact.pivots));
     let (targets, up_to) = (targets(exact), up_to(exact));
-    let some = format!("{found} of {all} solutions {up_to} were found");
+    let some = format!("{found} of {all} solutions{up_to} were found");
     match exact.completeness {
         Completeness::Complete => {
-            format!("{found} solutions {up_to}: as many as {targets} in general position have.")
+            format!("{found} solutions{up_to}: as many as {targets} in general position have.")
         }
         Completeness::NonGeneric => {
             let isolated = count(census.certified);
             let mut text = format!(
-                "The {} are non-generic: {isolated} isolated solutions {up_to} were found, where {} in general position \
+                "The {} are non-generic: {isolated} isolated solutions{up_to} were found, where {} in general position \
                  have {all}.",
-                if exact.poses == 0 { "points" } else { targets },
-                if exact.poses == 0 { "points" } else { targets },
+                if has_cognates(exact) { "points" } else { &targets },
+                if has_cognates(exact) { "points" } else { &targets },
             );
             if census.not_certified > 0 {
                 let rest = count(census.not_certified);
@@ -166,11 +179,12 @@ fn real(exact: &ExactRecord) -> String {
     } else {
         "have links that are conjugates of each other"
     };
-    let mut text = format!(
-        "{real}, {} more {without}, {} are complex.",
-        count(census.real_curve),
-        count(census.complex)
-    );
+    let complex = count(census.complex);
+    let mut text = if exact.pivots > 0 && census.real_curve == 0 {
+        format!("{real}, {complex} are complex.")
+    } else {
+        format!("{real}, {} more {without}, {complex} are complex.", count(census.real_curve))
+    };
     if census.degenerate > 0 {
         text.push_str(&format!(
             " {} of the real ones cannot be listed: a link has no length.",
@@ -223,12 +237,14 @@ fn proof(exact: &ExactRecord) -> String {
     }
     text.push_str(". Not proved: that there are no others; ");
     text.push_str(if exact.generic {
-        match exact.poses {
-            0 | 1 => "that rests on the count published by Wampler, Morgan and Sommese (1992).",
-            2..=4 => {
+        match (exact.poses, exact.pivots) {
+            (0 | 1, 0) => "that rests on the count published by Wampler, Morgan and Sommese (1992).",
+            (2..=4, 0) => {
                 "that rests on the count published by Brake, Hauenstein, Murray, Myszka and Wampler (2016)."
             }
-            _ => "that rests on Burmester's count of dyads, four at most.",
+            (_, 0) => "that rests on Burmester's count of dyads, four at most.",
+            (0 | 1, 2) => "that rests on the count published by Morgan and Wampler (1990).",
+            _ => "that rests on a count by monodromy, made twice from different beginnings.",
         }
     } else {
         "and solutions that are not isolated are not listed."

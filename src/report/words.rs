@@ -377,8 +377,8 @@ pub(super) fn fewer(record: &Record) -> Option<String> {
         }
         (true, true) if is_motion => "no other linkage through these poses and points is accepted.",
         (true, false) if is_motion => "no other linkage passes these poses and points.",
-        (true, true) => "no other linkage through the nine points is accepted.",
-        (true, false) => "no other linkage passes the nine points.",
+        (true, true) => "no other linkage through these points is accepted.",
+        (true, false) => "no other linkage passes these points.",
         (false, true) => {
             "whatever else the search judged draws one of these curves again, mirrored where the target is symmetric, or \
              is not accepted."

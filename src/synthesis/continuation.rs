@@ -18,7 +18,7 @@ use crate::record::{
     Candidate, Census, Certified, Completeness, Evaluations, ExactRecord, Reason, generic_classes,
 };
 use crate::task::Problem;
-use crate::task::forms::precision::Precise;
+use crate::task::forms::precision::{Precise, counted};
 use crate::task::spec::Method;
 use rayon::prelude::*;
 
@@ -57,9 +57,9 @@ pub fn listed(
         ..census
     };
     let linkages = classes.iter().zip(proofs).map(|(class, proof)| class.listed(proof)).collect();
-    let poses = problem.task().body().map_or(0, |body| body.angles.iter().flatten().count());
-    let generic = census.classes == generic_classes(poses);
-    Exact { record: ExactRecord { poses, census, generic, completeness, linkages }, classes }
+    let (poses, pivots) = counted(problem);
+    let generic = census.classes == generic_classes(poses, pivots);
+    Exact { record: ExactRecord { poses, pivots, census, generic, completeness, linkages }, classes }
 }
 
 /// Lists all real linkages of a quick solve, for a target that moves: without certificates and without distances to

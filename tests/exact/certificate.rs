@@ -11,6 +11,7 @@ use linkwright::internals::numbers::nine_point::certificate::{
 use linkwright::internals::numbers::nine_point::conjugation::Reality;
 use linkwright::internals::numbers::nine_point::distinct::not_proved_distinct;
 use linkwright::internals::numbers::nine_point::refinement::refine;
+use linkwright::internals::numbers::nine_point::target::Kind;
 use linkwright::internals::numbers::nine_point::{Displacements, Solution, Target};
 
 fn certificates(target: &Target, known: &[Known]) -> Vec<Certificate> {
@@ -225,7 +226,7 @@ fn carried(mut solution: Solution, from: &Displacements, to: &Displacements) -> 
         let there = Displacements {
             delta: between(from.delta, to.delta),
             starred: between(from.starred, to.starred),
-            poses: 0,
+            kind: Kind::default(),
         };
         match refine(&there, &solution) {
             Ok(refined) if refined.moved < 0.05 => {
@@ -254,7 +255,7 @@ fn solutions_that_are_not_their_own_conjugates_are_proved_complex() {
         let [one, two] = [(); 2].map(|()| Displacements {
             delta: near(start.delta),
             starred: near(start.starred),
-            poses: 0,
+            kind: Kind::default(),
         });
         let around = carried(known.solution, &start, &one)
             .and_then(|solution| carried(solution, &one, &two))

@@ -3,6 +3,7 @@
 use crate::random;
 use linkwright::internals::mechanism::Complex;
 use linkwright::internals::numbers::arithmetic::streams::{Stream, normal, uniform, unit};
+use linkwright::internals::numbers::nine_point::target::Kind;
 use linkwright::internals::numbers::nine_point::target::STEPS;
 use linkwright::internals::numbers::nine_point::{Displacements, Solution, Target};
 use std::f64::consts::PI;
@@ -156,6 +157,7 @@ pub fn random_complex(stream: &mut Stream) -> (Displacements, Solution) {
         let delta = (linear + (linear * linear - f * constant * 4.0).sqrt()) / (f * 2.0);
         (delta, e - f * delta)
     });
-    let displacements = Displacements { delta: both.map(|b| b.0), starred: both.map(|b| b.1), poses: 0 };
+    let displacements =
+        Displacements { delta: both.map(|b| b.0), starred: both.map(|b| b.1), kind: Kind::default() };
     (displacements, Solution { pins, grounds, pins_starred, grounds_starred, rotations })
 }

@@ -11,6 +11,10 @@ use std::time::Instant;
 /// Poses, points, and the number of linkages, real and complex.
 const KINDS: [(usize, usize, usize); 4] = [(5, 0, 6), (4, 2, 30), (3, 4, 201), (2, 6, 1112)];
 
+/// Poses, points, fixed pivots that are given, and the number of linkages.
+const GIVEN: [(usize, usize, usize, usize); 6] =
+    [(0, 5, 2, 36), (0, 7, 1, 243), (2, 4, 1, 94), (2, 2, 2, 6), (3, 2, 1, 12), (3, 0, 2, 1)];
+
 /// A target: its place, and an angle, degrees.
 type Row = (Complex, Option<f64>);
 
@@ -19,8 +23,10 @@ fn text(rows: &[Row], more: &str) -> String {
         Some(angle) => format!("[{:?}, {:?}, {angle:?}]", p.re, p.im),
         None => format!("[{:?}, {:?}]", p.re, p.im),
     };
+    let (table, key) =
+        if rows.iter().any(|(_, angle)| angle.is_some()) { ("motion", "poses") } else { ("path", "points") };
     let rows: Vec<String> = rows.iter().map(row).collect();
-    format!("format = 1\n[task.motion]\nposes = [{}]\n{more}", rows.join(", "))
+    format!("format = 1\n[task.{table}]\n{key} = [{}]\n{more}", rows.join(", "))
 }
 
 /// Positions of a random linkage, of which some places have an angle too.
@@ -85,6 +91,12 @@ fn is_near(one: &FourBar, other: &FourBar) -> bool {
     same(false) || same(true)
 }
 
+/// Whether a linkage is the one that is listed, or another mechanism of its class.
+fn is_of_class(listed: &ExactLinkage, linkage: &FourBar) -> bool {
+    let all = std::iter::once(&listed.linkage).chain(listed.others.iter().map(|form| &form.linkage));
+    all.into_iter().any(|form| is_near(form, linkage))
+}
+
 #[test]
 fn positions_of_random_linkages_give_all_linkages_the_generating_one_among_them() {
     for ((poses, points, classes), instances) in KINDS.into_iter().zip([40, 30, 12, 3]) {
@@ -99,7 +111,7 @@ fn positions_of_random_linkages_give_all_linkages_the_generating_one_among_them(
             assert_eq!((exact.poses, exact.census.classes), (poses, classes), "{name}");
             assert_eq!((exact.completeness, exact.generic), (Completeness::Complete, true), "{name}");
             assert_eq!((exact.census.certified, exact.census.not_told_apart), (classes, 0), "{name}");
-            let found = exact.linkages.iter().find(|one| is_near(&one.linkage, &made.linkage));
+            let found = exact.linkages.iter().find(|one| is_of_class(one, &made.linkage));
             let found = found.unwrap_or_else(|| panic!("{name}: the generating linkage is not there"));
             assert!(found.certified.is_some() && found.free_of_defects, "{name}: {found:?}");
             let size = record.problem.resolved.task.points.iter().map(|p| (point(*p) - rows[0].0).norm());
@@ -113,6 +125,53 @@ fn positions_of_random_linkages_give_all_linkages_the_generating_one_among_them(
             }
         }
         assert!(checked >= 100, "{poses} poses: {checked} linkages");
+    }
+}
+
+#[test]
+fn targets_of_random_linkages_with_their_pivots_given_lead_back_to_them() {
+    for (poses, points, pivots, classes) in GIVEN {
+        let mut checked = 0;
+        for index in 0..if classes > 200 { 4 } else { 12 } {
+            let draws = &mut stream(80 + (poses + 8 * pivots) as u64, index);
+            let (made, rows) = positions(draws, poses, points);
+            // With one pivot, now that of the crank and now that of the follower.
+            let fixed = [made.linkage.crank_pivot(), made.linkage.follower_pivot()];
+            let names: &[(usize, &str)] = match (pivots, index % 2) {
+                (2, _) => &[(0, "A"), (1, "B")],
+                (_, 0) => &[(0, "A")],
+                _ => &[(1, "B")],
+            };
+            let lines: String = names
+                .iter()
+                .map(|(i, name)| format!("{name} = [{:?}, {:?}]\n", fixed[*i].re, fixed[*i].im))
+                .collect();
+            let ratio = "[require]\nlink_ratio_max = 1e6\nlongest_max = \"any\"\n";
+            let record = solved(&rows, &format!("{ratio}[design]\n{lines}"));
+            let exact = record.exact.as_ref().expect("exact answers");
+            let name = format!("{poses} poses, {points} points, {pivots} pivots, instance {index}");
+            assert_eq!((exact.poses, exact.pivots, exact.census.classes), (poses, pivots, classes), "{name}");
+            assert_eq!((exact.census.certified, exact.census.not_told_apart), (classes, 0), "{name}");
+            let found = exact.linkages.iter().find(|one| is_of_class(one, &made.linkage));
+            let found = found.unwrap_or_else(|| panic!("{name}: the generating linkage is not there"));
+            assert!(found.certified.is_some() && found.free_of_defects, "{name}: {found:?}");
+            let size = record.problem.resolved.task.points.iter().map(|p| (point(*p) - rows[0].0).norm());
+            let size = size.fold(0.0, f64::max);
+            for listed in &exact.linkages {
+                passes(&listed.linkage, listed, &rows, size);
+                let own = [listed.linkage.crank_pivot(), listed.linkage.follower_pivot()];
+                for (i, _) in names {
+                    let off =
+                        own.iter().map(|pivot| (pivot - fixed[*i]).norm()).fold(f64::INFINITY, f64::min);
+                    assert!(off <= 1e-12 * listed.linkage.longest_link().max(size), "{name}: {off:e}");
+                }
+                checked += 1;
+            }
+            if index < 2 {
+                assert_eq!(verify(&record).expect("a problem"), [], "{name}");
+            }
+        }
+        assert!(checked >= 12, "{poses} poses, {pivots} pivots: {checked} linkages");
     }
 }
 

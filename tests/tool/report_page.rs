@@ -133,6 +133,8 @@ fn with_exact(mut record: Record) -> Record {
         others: Vec::new(),
     };
     record.exact = Some(ExactRecord {
+        poses: 0,
+        pivots: 0,
         census: Census {
             tracked: 1442,
             finite: 1442,

@@ -8,6 +8,7 @@ use crate::judge::exact_linkages::{Recomputed, class_at};
 use crate::record::{
     Candidate, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, Reason, Record, generic_classes,
 };
+use crate::task::forms::precision::counted;
 
 /// The factor by which the radius of a recomputed proof may differ: it is an upper bound that depends on rounding.
 const WIDER: f64 = 1.5;
@@ -27,8 +28,9 @@ impl Comparison<'_> {
         }
         let Some(exact) = &record.exact else { return };
         self.census(exact, record.termination.reason == Reason::Cancelled);
-        let poses = problem.task().body().map_or(0, |body| body.angles.iter().flatten().count());
+        let (poses, pivots) = counted(problem);
         self.same("exact.poses", exact.poses, poses);
+        self.same("exact.pivots", exact.pivots, pivots);
         let Some(target) = target else {
             let wanted = "points and poses that have finitely many answers";
             return self.differ("exact", wanted, "a task without");
@@ -135,7 +137,7 @@ impl Comparison<'_> {
         // A search that was cancelled records only that.
         let found = if cancelled && exact.completeness == Completeness::Cancelled {
             Completeness::Cancelled
-        } else if c.classes == generic_classes(exact.poses) {
+        } else if c.classes == generic_classes(exact.poses, exact.pivots) {
             Completeness::Complete
         } else if c.failed == 0 && c.singular > 0 && c.singular >= c.duplicate {
             Completeness::NonGeneric
@@ -143,7 +145,7 @@ impl Comparison<'_> {
             Completeness::Incomplete
         };
         self.alike("exact.completeness", &exact.completeness, &found);
-        self.same("exact.generic", exact.generic, c.classes == generic_classes(exact.poses));
+        self.same("exact.generic", exact.generic, c.classes == generic_classes(exact.poses, exact.pivots));
     }
 
     fn figures(&mut self, listed: &ExactLinkage, found: &Candidate) {

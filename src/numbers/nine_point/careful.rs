@@ -134,7 +134,8 @@ fn displaced(along: &Segment, t: f64) -> Displacements<(DoubleComplex, DoubleCom
 fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
     let zero = DoubleComplex::default();
     let at = displaced(along, t);
-    let (points, len) = (at.points(), at.len());
+    let kind = at.kind;
+    let points = kind.points();
     let Displacements { delta, starred, .. } = at;
     let mut matrix = [[zero; ORDER]; ORDER];
     let mut right = [[zero; 2]; ORDER];
@@ -142,7 +143,7 @@ fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
     let mut sides = [[[zero; 2]; STEPS]; 2];
     let mut turns = [[zero; STEPS]; 2];
     let mut given = [[zero; 2]; MOST_POSES];
-    for j in 0..len {
+    for j in 0..kind.places() {
         let tau = z[ORDER + j];
         let t = tau + real(1.0);
         let inverse = real(1.0) / t;
@@ -156,7 +157,7 @@ fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
             sides[leg][j] = [-(u * m_s + m * r), -(r * delta[j].1 + l * starred[j].1)];
         }
         if let Some(pose) = j.checked_sub(points) {
-            given[pose] = turned(t, delta[len + pose], starred[len + pose]);
+            given[pose] = turned(t, delta[kind.turn(pose)], starred[kind.turn(pose)]);
             for leg in 0..2 {
                 let row = points + 2 * pose + leg;
                 matrix[row][LEG * leg..LEG * (leg + 1)].copy_from_slice(&legs[leg][j]);
@@ -175,16 +176,24 @@ fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
             *right = p * *one + q * other;
         }
     }
+    for link in 0..kind.pivots {
+        let entry = kind.places() + link;
+        for (twin, given) in [delta[entry], starred[entry]].into_iter().enumerate() {
+            let (row, first) = (points + 2 * (kind.poses + link) + twin, LEG * link + 2 * twin);
+            (matrix[row][first], matrix[row][first + 1]) = (real(1.0), real(-1.0));
+            right[row] = [given.0 - (z[first] - z[first + 1]), given.1];
+        }
+    }
     eliminate(&mut matrix, &mut right);
     let answer = |side: usize| {
         let mut answer = [zero; UNKNOWNS];
         for i in 0..ORDER {
             answer[i] = right[i][side];
         }
-        for (pose, given) in given.iter().enumerate().take(STEPS - len) {
-            let (turn, own) = (ORDER + points + pose, ORDER + len + pose);
-            answer[turn] = given[side];
-            answer[own] = turned(z[own] + real(1.0), delta[len + pose], starred[len + pose])[side];
+        for j in kind.lengths()..STEPS {
+            for own in kind.spare(j).map(|own| ORDER + own) {
+                answer[own] = turned(z[own] + real(1.0), delta[j], starred[j])[side];
+            }
         }
         for j in 0..points {
             let larger = usize::from(magnitude(turns[1][j]) > magnitude(turns[0][j]));
@@ -250,12 +259,12 @@ mod tests {
 
     #[test]
     fn it_ends_where_the_tracker_in_doubles_does() {
-        let set = StartSet::embedded(0);
+        let set = StartSet::embedded(crate::target::Kind::default());
         let turned = |of: [Complex; STEPS], by: f64| of.map(|z| z * Complex::from_polar(1.1, by) + by);
         let to = Displacements {
             delta: turned(set.displacements.delta, 0.5),
             starred: turned(set.displacements.starred, -0.3),
-            poses: 0,
+            kind: crate::target::Kind::default(),
         };
         let along = Segment { from: set.displacements, to };
         let starts: Vec<Solution> = set.solutions.iter().step_by(200).copied().collect();

@@ -275,6 +275,9 @@ fn contraction_bound(
                 places.into_iter().zip(derivatives(places.map(|i| discs[i]), delta, starred)).collect()
             }
             Equation::Turn(place) => vec![(place, starred)],
+            Equation::Ground(place) | Equation::GroundStarred(place) => {
+                vec![(place, Disc::point(Complex::ONE))]
+            }
         };
         for (place, slope) in slopes {
             let entry = slope.times_power_of_two(linear.weights[place]).times_power_of_two(linear.rows[row]);

@@ -12,11 +12,12 @@
 //! the focus. So the set of the three (focus, product), with their starred twins, identifies a class. The foci alone
 //! do so in general: linkages that are mirror images, of foci on a symmetric target's axis, share them.
 //!
-//! With poses a class has two solutions: a cognate turns the coupler differently. Foci and products tell such classes
-//! apart as well.
+//! With poses a class has two solutions: a cognate turns the coupler differently; with both
+//! pivots given it has one, with one and no poses two cognates. Foci and
+//! products tell such classes apart as well.
 
 use super::conjugation::Reality;
-use super::target::{Displacements, STEPS, Solution};
+use super::target::{Displacements, Solution};
 use linkwright_arithmetic::Complex;
 
 /// One class of six solutions.
@@ -59,21 +60,36 @@ impl Solution {
         let (pins_starred, grounds_starred) = image(self.pins_starred, self.grounds_starred);
         let (x, a) = (self.pins[0], self.grounds[0]);
         let length = (x - a).inv();
-        let rotations: [Complex; STEPS] =
-            std::array::from_fn(|j| (x * self.rotations[j] + at.delta[j] - a) * length);
+        let mut rotations = self.rotations;
+        for (j, t) in rotations.iter_mut().enumerate().take(at.kind.places()) {
+            *t = (x * *t + at.delta[j] - a) * length;
+        }
         Solution { pins, grounds, pins_starred, grounds_starred, rotations }
     }
 
     /// Returns the six solutions of the class: this one, its two cognates, and the three with their legs swapped. Of a
-    /// target with poses, which has no cognates, there are two: this one and the one with its legs swapped, in turn.
+    /// target with poses, which has no cognates, there are two: this one and the one with its legs swapped, in turn. Of one
+    /// with both pivots given there is this one alone; with one there are two cognates.
     pub fn images(&self, at: &Displacements) -> [Solution; 6] {
-        if at.poses > 0 {
-            let swapped = self.swapped();
-            return [*self, swapped, *self, swapped, *self, swapped];
+        let cognates = self.cognates(at);
+        let all: Vec<Solution> = match at.kind.pivots {
+            0 => cognates.iter().copied().chain(cognates.iter().map(Solution::swapped)).collect(),
+            _ => cognates,
+        };
+        std::array::from_fn(|i| all[i % all.len()])
+    }
+
+    /// Returns this solution and those of its cognates that solve the equations too, with the first link on the given pivot:
+    /// through points alone all three, with one given pivot the two that have it, else this one.
+    pub fn cognates(&self, at: &Displacements) -> Vec<Solution> {
+        match (at.kind.poses, at.kind.pivots) {
+            (0, 0) => {
+                let first = self.cognate(at);
+                vec![*self, first, first.cognate(at)]
+            }
+            (0, 1) => vec![*self, self.cognate(at).swapped()],
+            _ => vec![*self],
         }
-        let first = self.cognate(at);
-        let second = first.cognate(at);
-        [*self, first, second, self.swapped(), first.swapped(), second.swapped()]
     }
 
     /// Returns the conjugate solution, which is one of the same target if that is real.

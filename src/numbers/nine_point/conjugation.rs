@@ -16,7 +16,8 @@
 //!
 //! (starred alike) take solutions to the others of their class, and sigma commutes with both. So sigma maps a class
 //! to a class, and if to itself, then as one of the six; being an involution, as the identity or as one of the three
-//! exchanges e, e r, e r^2 = r e (of a target with poses there are no cognates, and e alone is left). The identity: the six solutions are real. An exchange: a curve that is real, as its
+//! exchanges e, e r, e r^2 = r e (of a target with poses there are no cognates, and e alone is left; of seven
+//! points with one pivot given e r, which leaves that pivot in its place; of others with given pivots none). The identity: the six solutions are real. An exchange: a curve that is real, as its
 //! class is, drawn by linkages that are not.
 //!
 //! Let w be the solution, known to lie in an enclosure, and to be the only solution in the polydisc D. If the image
@@ -27,7 +28,7 @@ use super::discs::{Disc, Upper};
 use super::double_discs::DoubleDisc;
 use super::polynomial::{ExactDisplacements, PIVOTS, UNKNOWNS};
 use super::refinement::Midpoint;
-use super::target::STEPS;
+use super::target::Kind;
 use linkwright_arithmetic::Complex;
 
 /// The effect of conjugation on a solution: found to rounding in a [`super::Class`], proved in a
@@ -71,10 +72,16 @@ pub(super) fn reality(
     if by_identity == Image::Itself {
         return Reality::Real;
     }
-    let mut by_exchanges = vec![image_of(Some(enclosure), true)];
-    // Cognates turn the coupler differently: where its turns are given they are no solutions.
-    if displacements.poses == 0 {
+    let mut by_exchanges = Vec::with_capacity(3);
+    // Where a pivot is given, the links have places of their own; and cognates turn the coupler differently: where its turns
+    // are given they are no solutions.
+    if displacements.kind.pivots == 0 {
+        by_exchanges.push(image_of(Some(enclosure), true));
+    }
+    if displacements.kind.poses == 0 && displacements.kind.pivots <= 1 {
         by_exchanges.push(image_of(roberts(displacements, &enclosure), true));
+    }
+    if displacements.kind == Kind::default() {
         by_exchanges.push(image_of(roberts(displacements, &exchange(&enclosure)), false));
     }
     if by_identity == Image::Unknown {
@@ -134,7 +141,7 @@ fn roberts(displacements: &ExactDisplacements, of: &Enclosure) -> Option<Enclosu
     }
     let (x, a) = (of[0], of[2]);
     let per_crank = (x - a).inverse()?;
-    for j in 0..STEPS {
+    for j in 0..displacements.kind.places() {
         let delta = DoubleDisc::point(displacements.delta[j]);
         image[PIVOTS + j] = (x * of[PIVOTS + j] + delta - a) * per_crank;
     }

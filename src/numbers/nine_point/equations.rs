@@ -12,7 +12,8 @@
 //! No large terms cancel in this form: it serves links of ten thousand times the points' extent, whose u is large or
 //! whose tau is small, as well as others.
 //!
-//! The T_j of a pose is given: both its rows stay as they are, with p times its own change on the right. The T_j of a
+//! The T_j of a pose is given: both its rows stay as they are, with p times its own change on the right. A given pivot has
+//! two rows, x - u = a and its twin. The T_j of a
 //! point occurs in two equations, one per leg, so that p_2 (row of leg 1) - p_1 (row of leg 2) is free of it: eight
 //! rows in the eight pivots. dlog T_j follows from the leg with the larger |p|. The rows are scaled to a largest
 //! entry of one before the elimination.
@@ -75,9 +76,13 @@ pub fn residuals(of: &Solution, at: &Displacements) -> [[Complex; STEPS]; 2] {
         let (x, a) = (of.pins[leg], of.grounds[leg]);
         let (x_s, a_s) = (of.pins_starred[leg], of.grounds_starred[leg]);
         std::array::from_fn(|j| {
-            if j >= at.len() {
-                let place = if leg == 0 { j - at.poses } else { j };
-                return of.rotations[place] * at.starred[j] - at.delta[j];
+            let kind = at.kind;
+            if j >= kind.lengths() {
+                return of.rotations[kind.spare(j)[leg]] * at.starred[j] - at.delta[j];
+            }
+            if let Some(link) = j.checked_sub(kind.places()) {
+                let pairs = [(of.grounds, at.delta), (of.grounds_starred, at.starred)];
+                return pairs[leg].0[link] - pairs[leg].1[j];
             }
             let t = of.rotations[j];
             (x * t + at.delta[j] - a) * (x_s / t + at.starred[j] - a_s) - (x - a) * (x_s - a_s)
@@ -161,8 +166,9 @@ pub fn steps<const R: usize>(
     let mut sides = [[[zero; R]; STEPS]; 2];
     let mut turns = [[zero; STEPS]; 2];
     let mut given = [[zero; R]; MOST_POSES];
-    let (points, len) = (at.points(), at.len());
-    for j in 0..len {
+    let kind = at.kind;
+    let points = kind.points();
+    for j in 0..kind.places() {
         let t = z[ORDER + j] + ComplexLanes::splat(Complex::ONE);
         let inverse = t.recip();
         for leg in 0..2 {
@@ -176,7 +182,7 @@ pub fn steps<const R: usize>(
             }
         }
         if let Some(pose) = j.checked_sub(points) {
-            given[pose] = turned::<R>(t, at, velocity, len + pose);
+            given[pose] = turned::<R>(t, at, velocity, kind.turn(pose));
             for leg in 0..2 {
                 let row = points + 2 * pose + leg;
                 let largest = legs[leg][j].iter().map(|z| size(*z)).reduce(larger);
@@ -206,17 +212,30 @@ pub fn steps<const R: usize>(
             right[j][r] = (p * sides[0][j][r] + q * sides[1][j][r]).scale(scale);
         }
     }
+    for link in 0..kind.pivots {
+        let entry = kind.places() + link;
+        let given = [(at.delta, velocity.delta), (at.starred, velocity.starred)];
+        for (twin, (given, moved)) in given.iter().enumerate() {
+            let (row, first) = (points + 2 * (kind.poses + link) + twin, LEG * link + 2 * twin);
+            let one = ComplexLanes::splat(Complex::ONE);
+            (matrix[row][first], matrix[row][first + 1]) = (one, -one);
+            right[row][0] = given[entry] - (z[first] - z[first + 1]);
+            if R == 2 {
+                right[row][R - 1] = moved[entry];
+            }
+        }
+    }
     let smallest = solve(&mut matrix, &mut right);
     let mut answer = [[zero; UNKNOWNS]; R];
     for (r, answer) in answer.iter_mut().enumerate() {
         for i in 0..ORDER {
             answer[i] = right[i][r];
         }
-        for pose in 0..STEPS - len {
-            let (turn, own) = (ORDER + points + pose, ORDER + len + pose);
-            answer[turn] = given[pose][r];
-            let t = z[own] + ComplexLanes::splat(Complex::ONE);
-            answer[own] = turned::<R>(t, at, velocity, len + pose)[r];
+        for j in kind.lengths()..STEPS {
+            for own in kind.spare(j).map(|own| ORDER + own) {
+                let t = z[own] + ComplexLanes::splat(Complex::ONE);
+                answer[own] = turned::<R>(t, at, velocity, j)[r];
+            }
         }
         for j in 0..points {
             let mut left = [sides[0][j][r], sides[1][j][r]];

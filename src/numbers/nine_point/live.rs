@@ -159,6 +159,6 @@ fn midpoint(from: &Displacements, to: &Displacements) -> Displacements {
     Displacements {
         delta: std::array::from_fn(|j| (from.delta[j] + to.delta[j]) * 0.5 + off(j, 0.754_877_7)),
         starred: std::array::from_fn(|j| (from.starred[j] + to.starred[j]) * 0.5 + off(j, 1.324_718_0)),
-        poses: to.poses,
+        kind: to.kind,
     }
 }

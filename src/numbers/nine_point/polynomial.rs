@@ -6,7 +6,9 @@
 //! f = T starred - delta
 //! ```
 //!
-//! once for the rotation in the pose's place and once for that in the place of the turn itself, which has no other use.
+//! once for the rotation in the pose's place and once for that in the place of the turn itself, which has no other use; and
+//! a given pivot by the two equations g = delta, g* = starred. Rotations in the places of given pivots, which are none,
+//! follow a quotient of their own.
 //! The loop equation of a link (p, g) (a moving pin and its ground pivot) at point j, multiplied by T_j:
 //!
 //! ```text
@@ -40,16 +42,14 @@ impl From<&Target> for ExactDisplacements {
     /// is a power of two; turns are taken as they are. (A part below 2^-1022 of the scale may underflow; the bound of a residual covers it.)
     fn from(target: &Target) -> Self {
         let factor = target.scale.recip();
-        let delta = std::array::from_fn(|j| match j.checked_sub(target.displacements.len()) {
-            Some(pose) => target.half_turns[pose].into(),
+        let kind = target.displacements.kind;
+        let delta = std::array::from_fn(|j| match j.checked_sub(kind.lengths()) {
+            Some(pose) if pose < kind.poses => target.half_turns[pose].into(),
+            Some(_) => Complex::ONE.into(),
             None => DoubleComplex::difference_of(target.points[j + 1], target.points[0])
                 .times_power_of_two(factor),
         });
-        ExactDisplacements {
-            delta,
-            starred: delta.map(DoubleComplex::conj),
-            poses: target.displacements.poses,
-        }
+        ExactDisplacements { delta, starred: delta.map(DoubleComplex::conj), kind }
     }
 }
 
@@ -76,18 +76,27 @@ pub fn solution(of: &[Complex; UNKNOWNS]) -> Solution {
 pub enum Equation {
     /// A link keeps its length from the first place to place j: p, g, p*, g*, T_j.
     Length([usize; 5]),
-    /// The rotation of a pose is given.
+    /// The rotation of a pose is given, a quotient.
     Turn(usize),
+    /// A ground pivot is given.
+    Ground(usize),
+    /// The starred twin of a ground pivot is given.
+    GroundStarred(usize),
 }
 
-/// Returns equation `link` (0 of x and a, 1 of y and b) of place j; in the place of a turn the first is that of the pose's
-/// rotation, the second that of the place's own.
+/// Returns equation `link` (0 of x and a, 1 of y and b) of entry j of the displacements; where that is no place, one of the
+/// two equations of what is given there.
 #[inline(always)]
 pub fn equation<Z>(of: &Displacements<Z>, link: usize, j: usize) -> Equation {
-    if j < of.len() {
+    let kind = of.kind;
+    if j < kind.places() {
         Equation::Length([link, 2 + link, 4 + link, 6 + link, PIVOTS + j])
+    } else if j >= kind.lengths() {
+        Equation::Turn(PIVOTS + kind.spare(j)[link])
+    } else if link == 0 {
+        Equation::Ground(2 + j - kind.places())
     } else {
-        Equation::Turn(PIVOTS + if link == 0 { j - of.poses } else { j })
+        Equation::GroundStarred(6 + j - kind.places())
     }
 }
 

@@ -140,6 +140,7 @@ impl Linearisation {
                     places.into_iter().zip(derivatives(places.map(|i| at[i]), delta, starred)).collect()
                 }
                 Equation::Turn(place) => vec![(place, starred)],
+                Equation::Ground(place) | Equation::GroundStarred(place) => vec![(place, Complex::ONE)],
             };
             let largest = slopes.iter().map(|(place, d)| (d * weights[*place]).norm()).fold(0.0, f64::max);
             if !(f64::MIN_POSITIVE * 2.0..=f64::MAX / 4.0).contains(&largest) {
@@ -185,6 +186,8 @@ pub(super) fn residuals(displacements: &ExactDisplacements, midpoint: &Midpoint)
         match equation(displacements, link, j) {
             Equation::Length(places) => value(places.map(|i| midpoint[i]), delta, starred),
             Equation::Turn(place) => midpoint[place] * starred - delta,
+            Equation::Ground(place) => midpoint[place] - delta,
+            Equation::GroundStarred(place) => midpoint[place] - starred,
         }
     })
 }
@@ -194,7 +197,8 @@ pub(super) fn residuals(displacements: &ExactDisplacements, midpoint: &Midpoint)
 /// With e = [`RELATIVE_ERROR`]: a complex sum errs by at most e times its own magnitude, a complex product by 4 e
 /// times the product of magnitudes. With every difference replaced by the sum of magnitudes, L and M err by at most
 /// (1 + 4 + 1) e, their product by (6 + 6 + 4) e, T (U V) by (1 + 1 + 4 + 4) e, and f by (16 + 1) e of their
-/// majorants, but for terms in e^2; 32 e covers these as well. The equation of a turn is one product and one difference.
+/// majorants, but for terms in e^2; 32 e covers these as well. The equation of a turn is one product and one difference, that of
+/// a given pivot one difference.
 pub(super) fn residual_error(
     displacements: &ExactDisplacements,
     midpoint: &Midpoint,
@@ -210,6 +214,8 @@ pub(super) fn residual_error(
             (p * t + (delta + g)) * (ps + (starred + gs) * t) + t * ((p + g) * (ps + gs))
         }
         Equation::Turn(place) => size(place) * starred + delta,
+        Equation::Ground(place) => size(place) + delta,
+        Equation::GroundStarred(place) => size(place) + starred,
     };
     Upper::exactly(32.0 * RELATIVE_ERROR) * majorant + Upper::exactly(UNDERFLOW)
 }

@@ -5,7 +5,7 @@ use super::certificate::certify;
 use super::classes::{Class, key};
 use super::conjugation::Reality;
 use super::settle::{Fate, Fates, Options, complete, firsts, isolated, settle};
-use super::start::{CLASSES, StartSet};
+use super::start::StartSet;
 use super::target::{Solution, Target};
 use super::tracker::Segment;
 use rayon::prelude::*;
@@ -75,7 +75,7 @@ pub struct Solved {
 impl Solved {
     /// Returns the number of classes that a target in general position has.
     pub fn generic_classes(&self) -> usize {
-        CLASSES[self.target.displacements.poses]
+        self.target.displacements.kind.classes()
     }
 
     /// Returns the completeness of the list.
@@ -106,7 +106,7 @@ pub fn solve(
     progress: &(dyn Fn(usize, usize) + Sync),
     cancel: &AtomicBool,
 ) -> Solved {
-    let start = StartSet::embedded(target.displacements.poses);
+    let start = StartSet::embedded(target.displacements.kind);
     let along = Segment { from: start.displacements, to: target.displacements };
     let mut ends = settle(&start.solutions, &along, options, progress, cancel);
     complete(&mut ends, &start.solutions, &along, options, cancel);

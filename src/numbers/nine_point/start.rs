@@ -10,13 +10,14 @@
 //! | 0..4 | "LWNP" |
 //! | 4..8 | version, u32: 1 |
 //! | 8..12 | number of classes n, u32 |
-//! | 12..16 | number of poses beyond the first, u32 |
+//! | 12..14 | number of poses beyond the first, u16 |
+//! | 14..16 | number of given ground pivots, u16 |
 //! | 16..272 | delta_1 .. delta_8, delta*_1 .. delta*_8: real and imaginary part, f64 |
 //! | 272.. | n times x, x - a, x*, x* - a*, y, y - b, y*, y* - b*: real and imaginary part, f32 |
 
 use super::correction::correct;
 use super::equations::{UNKNOWNS, solution};
-use super::target::{Displacements, MOST_POSES, STEPS, Solution};
+use super::target::{Displacements, Kind, MOST_POSES, STEPS, Solution};
 use super::tracker::Segment;
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::ORDER;
@@ -24,22 +25,54 @@ use linkwright_arithmetic::once::once;
 use std::sync::OnceLock;
 use thiserror::Error;
 
-/// The number of classes of a target in general position, by the number of poses beyond the first.
+/// A kind of problem with its start set.
+struct Known {
+    kind: Kind,
+    /// The number of classes of a target in general position.
+    classes: usize,
+    /// The bytes of the embedded file.
+    bytes: &'static [u8],
+}
+
+/// The kinds that have a start set.
 ///
 /// Nine points: 8652 solutions (Wampler, Morgan & Sommese 1992) over the six images. Two, three and four poses with six,
 /// four and two points: 2224, 402 and 60 solutions (D. A. Brake, J. D. Hauenstein, A. P. Murray, D. H. Myszka,
 /// C. W. Wampler, "The complete solution of Alt-Burmester synthesis problems for four-bar linkages", ASME J. Mech. Robot. 8
-/// (2016) 041018) over the two labels. Five poses: four dyads in pairs (Burmester).
-pub const CLASSES: [usize; MOST_POSES + 1] = [1442, 1112, 201, 30, 6];
-
-/// The bytes of the embedded files, by the number of poses beyond the first.
-pub const EMBEDDED: [&[u8]; MOST_POSES + 1] = [
-    include_bytes!("start-set.bin"),
-    include_bytes!("start-set-2-poses.bin"),
-    include_bytes!("start-set-3-poses.bin"),
-    include_bytes!("start-set-4-poses.bin"),
-    include_bytes!("start-set-5-poses.bin"),
+/// (2016) 041018) over the two labels. Five poses: four dyads in pairs (Burmester). Five points with both pivots: 36
+/// solutions (A. P. Morgan, C. W. Wampler, "Solving a planar four-bar design problem using continuation", ASME J. Mech. Des.
+/// 112 (1990) 544-550). The counts of the other kinds were found by the generator: monodromy from two seeds, eight loops
+/// without a new solution at the end of each. With three poses and a pivot more the links would not be determined.
+const KNOWN: [Known; 11] = [
+    Known { kind: Kind { poses: 0, pivots: 0 }, classes: 1442, bytes: include_bytes!("start-set.bin") },
+    Known { kind: Kind { poses: 1, pivots: 0 }, classes: 1112, bytes: include_bytes!("start-set-1-0.bin") },
+    Known { kind: Kind { poses: 2, pivots: 0 }, classes: 201, bytes: include_bytes!("start-set-2-0.bin") },
+    Known { kind: Kind { poses: 3, pivots: 0 }, classes: 30, bytes: include_bytes!("start-set-3-0.bin") },
+    Known { kind: Kind { poses: 4, pivots: 0 }, classes: 6, bytes: include_bytes!("start-set-4-0.bin") },
+    Known { kind: Kind { poses: 0, pivots: 1 }, classes: 243, bytes: include_bytes!("start-set-0-1.bin") },
+    Known { kind: Kind { poses: 0, pivots: 2 }, classes: 36, bytes: include_bytes!("start-set-0-2.bin") },
+    Known { kind: Kind { poses: 1, pivots: 1 }, classes: 94, bytes: include_bytes!("start-set-1-1.bin") },
+    Known { kind: Kind { poses: 1, pivots: 2 }, classes: 6, bytes: include_bytes!("start-set-1-2.bin") },
+    Known { kind: Kind { poses: 2, pivots: 1 }, classes: 12, bytes: include_bytes!("start-set-2-1.bin") },
+    Known { kind: Kind { poses: 2, pivots: 2 }, classes: 1, bytes: include_bytes!("start-set-2-2.bin") },
 ];
+
+impl Kind {
+    /// Returns the kinds that have a start set.
+    pub fn known() -> impl Iterator<Item = Kind> {
+        KNOWN.iter().map(|known| known.kind)
+    }
+
+    /// Returns the number of classes of a target of this kind in general position; 0 for a kind without a start set.
+    pub fn classes(self) -> usize {
+        KNOWN.iter().find(|known| known.kind == self).map_or(0, |known| known.classes)
+    }
+
+    /// Returns the bytes of the embedded start set, none for a kind without one.
+    pub fn embedded(self) -> &'static [u8] {
+        KNOWN.iter().find(|known| known.kind == self).map_or(&[], |known| known.bytes)
+    }
+}
 
 const MAGIC: &[u8; 4] = b"LWNP";
 const VERSION: u32 = 1;
@@ -78,15 +111,17 @@ pub enum StartSetError {
 }
 
 impl StartSet {
-    /// Returns the embedded set of targets with so many poses beyond the first, which is read once. A test checks that the
-    /// files are whole.
+    /// Returns the embedded set of a kind of targets, which is read once. A test checks that the files are whole.
     ///
     /// # Panics
-    /// When the bytes within the program are damaged: an empty set would pass for "no linkage goes through the points". When
-    /// `poses` is above [`MOST_POSES`].
-    pub fn embedded(poses: usize) -> &'static StartSet {
-        static SETS: [OnceLock<StartSet>; MOST_POSES + 1] = [const { OnceLock::new() }; MOST_POSES + 1];
-        once(&SETS[poses], || StartSet::built_in(EMBEDDED[poses]))
+    /// When the bytes within the program are damaged, or the kind has no set: an empty set would pass for "no linkage goes
+    /// through the points".
+    pub fn embedded(kind: Kind) -> &'static StartSet {
+        static SETS: [OnceLock<StartSet>; KNOWN.len()] = [const { OnceLock::new() }; KNOWN.len()];
+        match KNOWN.iter().position(|known| known.kind == kind) {
+            Some(at) => once(&SETS[at], || StartSet::built_in(KNOWN[at].bytes)),
+            None => panic!("no start set for {kind:?}"),
+        }
     }
 
     /// Reads the set within the program.
@@ -107,8 +142,9 @@ impl StartSet {
         if bytes.get(..4) != Some(MAGIC) || word(4) != Some(VERSION) {
             return Err(StartSetError::Header);
         }
-        let poses = word(12).ok_or(StartSetError::Header)? as usize;
-        if poses > MOST_POSES {
+        let kind = word(12).ok_or(StartSetError::Header)? as usize;
+        let kind = Kind { poses: kind & 0xffff, pivots: kind >> 16 };
+        if kind.pivots > 2 || kind.poses + kind.pivots > MOST_POSES {
             return Err(StartSetError::Header);
         }
         let classes = word(8).ok_or(StartSetError::Header)? as usize;
@@ -124,7 +160,7 @@ impl StartSet {
         let displacements = Displacements {
             delta: std::array::from_fn(|j| number(&doubles, j)),
             starred: std::array::from_fn(|j| number(&doubles, STEPS + j)),
-            poses,
+            kind,
         };
         let rough: Vec<Solution> = singles
             .chunks_exact(2 * ORDER)
@@ -153,12 +189,12 @@ const NEWTON_STEPS: usize = 5;
 /// being one is taken. The T_j of a pose is given.
 fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
     let mut answer = pivots;
-    for pose in 0..at.poses {
-        let own = at.len() + pose;
-        let turn = at.delta[own] / at.starred[own];
-        (answer.rotations[at.points() + pose], answer.rotations[own]) = (turn, turn);
+    for j in at.kind.lengths()..STEPS {
+        for own in at.kind.spare(j) {
+            answer.rotations[own] = at.delta[j] / at.starred[j];
+        }
     }
-    for j in 0..at.points() {
+    for j in 0..at.kind.points() {
         let roots: [[Complex; 2]; 2] = std::array::from_fn(|leg| {
             let (x, a) = (pivots.pins[leg], pivots.grounds[leg]);
             let (x_s, a_s) = (pivots.pins_starred[leg], pivots.grounds_starred[leg]);
@@ -189,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_damaged_set_within_the_program_is_our_own_bug_and_never_an_empty_list() {
-        let whole = EMBEDDED[0];
+        let whole = Kind::default().embedded();
         for damaged in [&whole[..whole.len() - 1], &whole[1..], &[][..]] {
             let made = std::panic::catch_unwind(|| StartSet::built_in(damaged));
             assert!(made.is_err(), "{} bytes", damaged.len());

@@ -1,53 +1,82 @@
-//! The problem, precision points and poses, and its answer, a solution of the sixteen equations.
+//! The problem, precision points, poses and given pivots, and its answer, a solution of the sixteen equations.
 
 use linkwright_arithmetic::Complex;
 use thiserror::Error;
 
-/// The number of precision points beyond the first, where there are no poses.
+/// The number of precision points beyond the first, where there are neither poses nor given pivots.
 pub const STEPS: usize = 8;
 /// The largest number of poses beyond the first.
 pub const MOST_POSES: usize = STEPS / 2;
 
+/// A kind of exact problem: p poses beyond the first and q given ground pivots leave n = 8 - 2 p - 2 q points beyond the
+/// first place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Kind {
+    /// The number p of poses beyond the first.
+    pub poses: usize,
+    /// The number q of ground pivots that are given: of neither link, of the first, of both.
+    pub pivots: usize,
+}
+
+impl Kind {
+    /// Returns the number of points beyond the first place.
+    #[inline(always)]
+    pub fn points(self) -> usize {
+        STEPS - 2 * (self.poses + self.pivots)
+    }
+
+    /// Returns the number of places of the coupler beyond the first: points, then poses.
+    #[inline(always)]
+    pub fn places(self) -> usize {
+        self.points() + self.poses
+    }
+
+    /// Returns the number of entries of [`Displacements`] that are lengths: those of places, then given pivots.
+    #[inline(always)]
+    pub fn lengths(self) -> usize {
+        self.places() + self.pivots
+    }
+
+    /// Returns the entry that holds the turn of a pose.
+    #[inline(always)]
+    pub fn turn(self, pose: usize) -> usize {
+        self.lengths() + pose
+    }
+
+    /// Returns, for an entry that holds no place, the two rotations that are no unknowns of their own: the one in the place
+    /// that belongs to the entry, and that in the entry's own place.
+    #[inline(always)]
+    pub fn spare(self, j: usize) -> [usize; 2] {
+        // A turn belongs to its pose, a spare entry to its pivot.
+        if j < self.turn(self.poses) {
+            [j - self.lengths() + self.points(), j]
+        } else {
+            [j - self.turn(self.poses) + self.places(), j]
+        }
+    }
+}
+
 /// delta_j = P_j - P_0 and their starred twins: the equations depend on nothing else of a target. Only real targets have
 /// delta*_j = conj(delta_j); a path from target to target through complex numbers has not.
 ///
-/// With `poses` = p there are n = 8 - 2 p points, in the places 0 .. n, then the p poses, in the places n .. n + p, then,
-/// in the last p places, the turn of each pose from the first as a quotient: T = delta / starred. A real target has a
-/// number w there and its conjugate, so that |T| = 1 without rounding.
+/// The entries hold, in this order: the n points; the p poses; the q given pivots, a and a* relative to P_0; the turn of
+/// each pose from the first as a quotient, T = delta / starred, which in a real target are a number w and its conjugate, so
+/// that |T| = 1 without rounding; and for each given pivot a quotient of no meaning, one over one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Displacements<Z = Complex> {
-    /// The displacements delta_j, and the numerators of the turns.
+    /// The displacements delta_j, given pivots, and the numerators of the turns.
     pub delta: [Z; STEPS],
-    /// Their starred twins delta*_j, and the denominators of the turns.
+    /// Their starred twins, and the denominators of the turns.
     pub starred: [Z; STEPS],
-    /// The number of poses beyond the first.
-    pub poses: usize,
-}
-
-impl<Z> Displacements<Z> {
-    /// Returns the number of points beyond the first pose.
-    #[inline(always)]
-    pub fn points(&self) -> usize {
-        STEPS - 2 * self.poses
-    }
-
-    /// Returns the number of displacements: of points and of poses.
-    #[inline(always)]
-    pub fn len(&self) -> usize {
-        STEPS - self.poses
-    }
-
-    /// Returns whether there are no displacements, which never is so.
-    pub fn is_empty(&self) -> bool {
-        false
-    }
+    /// What the entries are.
+    pub kind: Kind,
 }
 
 impl<Z: Copy> Displacements<Z> {
     /// Returns the values of a function of each displacement.
     #[inline(always)]
     pub fn map<Y>(&self, of: impl Fn(Z) -> Y) -> Displacements<Y> {
-        Displacements { delta: self.delta.map(&of), starred: self.starred.map(&of), poses: self.poses }
+        Displacements { delta: self.delta.map(&of), starred: self.starred.map(&of), kind: self.kind }
     }
 
     /// Returns delta multiplied by `by` and delta* by `by_starred`; turns have no unit.
@@ -56,7 +85,7 @@ impl<Z: Copy> Displacements<Z> {
         Z: std::ops::Mul<Output = Z>,
     {
         let mut other = *self;
-        for j in 0..self.len() {
+        for j in 0..self.kind.lengths() {
             other.delta[j] = self.delta[j] * by;
             other.starred[j] = self.starred[j] * by_starred;
         }
@@ -69,7 +98,7 @@ impl<Z: Copy> Displacements<Z> {
         Displacements {
             delta: both(&self.delta, &others.delta),
             starred: both(&self.starred, &others.starred),
-            poses: self.poses,
+            kind: self.kind,
         }
     }
 }
@@ -82,7 +111,7 @@ impl<Z: Copy> Displacements<Z> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
     /// The points as given, in the order in which the path passes them. With poses: the first pose, the points, the other
-    /// poses, and zeros in the places of their turns.
+    /// poses, the given ground pivots, and zeros.
     pub points: [Complex; STEPS + 1],
     /// For each pose beyond the first a number w with w / w* = e^{i theta}, theta its turn from the first pose.
     pub half_turns: [Complex; MOST_POSES],
@@ -118,13 +147,21 @@ pub enum TargetError {
         second: usize,
     },
     /// The number of points and poses is not one that has a finite number of answers.
-    #[error("{points} points and {poses} poses: twice the poses and the points must make ten")]
+    #[error(
+        "{points} points, {poses} poses and {pivots} given pivots: twice the poses and the pivots and the points must make \
+         ten"
+    )]
     Number {
         /// The number of points without an angle.
         points: usize,
         /// The number of poses, the first included.
         poses: usize,
+        /// The number of given ground pivots.
+        pivots: usize,
     },
+    /// Both given pivots are one.
+    #[error("both given pivots are one")]
+    OnePivot,
 }
 
 /// The distance, relative to the extent, within which two points count as one.
@@ -148,59 +185,72 @@ impl Target {
     /// When a coordinate is not finite, two points coincide, or the points extend over more than 1e200 or less than
     /// 1e-200.
     pub fn new(points: [Complex; STEPS + 1]) -> Result<Self, TargetError> {
-        Self::of(points, [Complex::ZERO; MOST_POSES], 0)
+        Self::of(points, [Complex::ZERO; MOST_POSES], Kind::default())
     }
 
-    /// Creates the target of a first pose, of points, and of poses, each with its turn from the first, radians: five poses,
-    /// or 4, 3, 2 with 2, 4, 6 points.
+    /// Creates the target of a first pose, of points, of poses, each with its turn from the first in radians, and of given
+    /// ground pivots: points and twice the poses and the pivots must make eight.
     ///
     /// # Errors
     ///
-    /// When the numbers of points and poses are others, a number is not finite, two points coincide, or two poses do, or a
-    /// point and a pose, or all lie within 1e-200, or extend over more than 1e200.
-    pub fn with_poses(
+    /// When their numbers are others, a number is not finite, two points coincide, or two poses do, or a point and a pose, or
+    /// both pivots, or all places lie within 1e-200, or extend over more than 1e200.
+    pub fn mixed(
         first: Complex,
         points: &[Complex],
         poses: &[(Complex, f64)],
+        pivots: &[Complex],
     ) -> Result<Self, TargetError> {
-        if points.len() + 2 * poses.len() != STEPS {
-            return Err(TargetError::Number { points: points.len(), poses: poses.len() + 1 });
+        let kind = Kind { poses: poses.len(), pivots: pivots.len() };
+        if kind.poses + kind.pivots > MOST_POSES || kind.pivots > 2 || points.len() != kind.points() {
+            return Err(TargetError::Number {
+                points: points.len(),
+                poses: poses.len() + 1,
+                pivots: pivots.len(),
+            });
         }
         let (mut all, mut half_turns) = ([Complex::ZERO; STEPS + 1], [Complex::ZERO; MOST_POSES]);
         let places = points.iter().copied().chain(poses.iter().map(|pose| pose.0));
-        for (place, given) in all.iter_mut().zip(std::iter::once(first).chain(places)) {
+        for (place, given) in
+            all.iter_mut().zip(std::iter::once(first).chain(places).chain(pivots.iter().copied()))
+        {
             *place = given;
         }
         for (half, (_, angle)) in half_turns.iter_mut().zip(poses) {
             *half = Complex::from_polar(1.0, 0.5 * angle.rem_euclid(std::f64::consts::TAU));
         }
-        Self::of(all, half_turns, poses.len())
+        if let [one, other] = pivots
+            && one == other
+        {
+            return Err(TargetError::OnePivot);
+        }
+        Self::of(all, half_turns, kind)
     }
 
     fn of(
         points: [Complex; STEPS + 1],
         half_turns: [Complex; MOST_POSES],
-        poses: usize,
+        kind: Kind,
     ) -> Result<Self, TargetError> {
-        let given = &points[..=STEPS - poses];
         let is_finite = |z: &Complex| z.re.is_finite() && z.im.is_finite();
-        if let Some(at) = given.iter().position(|point| !is_finite(point)) {
+        if let Some(at) = points.iter().position(|point| !is_finite(point)) {
             return Err(TargetError::NotFinite { point: at + 1 });
         }
+        let places = &points[..=kind.places()];
         // Of the first pose, of points, of poses.
-        let turn = |at: usize| match (at, at.checked_sub(1 + STEPS - 2 * poses)) {
-            (0, _) if poses > 0 => Some(Complex::ONE),
+        let turn = |at: usize| match (at, at.checked_sub(1 + kind.points())) {
+            (0, _) if kind.poses > 0 => Some(Complex::ONE),
             (_, Some(pose)) => Some(half_turns[pose] / half_turns[pose].conj()),
             _ => None,
         };
-        if let Some(at) = (0..given.len()).find(|at| turn(*at).is_some_and(|turn| !is_finite(&turn))) {
+        if let Some(at) = (0..places.len()).find(|at| turn(*at).is_some_and(|turn| !is_finite(&turn))) {
             return Err(TargetError::NotFinite { point: at + 1 });
         }
-        let size = given.iter().map(|p| (p - points[0]).norm()).fold(0.0, f64::max);
-        if (size > 0.0 || poses == MOST_POSES) && !EXTENTS.contains(&size) {
+        let size = places.iter().map(|p| (p - points[0]).norm()).fold(0.0, f64::max);
+        if (size > 0.0 || kind.points() == 0) && !EXTENTS.contains(&size) {
             return Err(TargetError::Extent { size });
         }
-        for second in 1..given.len() {
+        for second in 1..places.len() {
             for first in 0..second {
                 let turned = turn(first).zip(turn(second)).is_some_and(|(a, b)| (a - b).norm() > COINCIDENT);
                 if !turned && (points[second] - points[first]).norm() <= COINCIDENT * size {
@@ -209,11 +259,12 @@ impl Target {
             }
         }
         let scale = power_of_two_above(size);
-        let delta: [Complex; STEPS] = std::array::from_fn(|j| match j.checked_sub(STEPS - poses) {
-            Some(pose) => half_turns[pose],
+        let delta: [Complex; STEPS] = std::array::from_fn(|j| match j.checked_sub(kind.lengths()) {
+            Some(pose) if pose < kind.poses => half_turns[pose],
+            Some(_) => Complex::ONE,
             None => (points[j + 1] - points[0]) / scale,
         });
-        let displacements = Displacements { delta, starred: delta.map(|d| d.conj()), poses };
+        let displacements = Displacements { delta, starred: delta.map(|d| d.conj()), kind };
         Ok(Target { points, half_turns, scale, displacements })
     }
 }

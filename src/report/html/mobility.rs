@@ -32,7 +32,7 @@ pub(super) fn mobility(record: &Record, c: &Candidate) -> Markup {
         let unit = words::unit_suffix(record);
         said.push(format!(
             "Proved: one linkage, and only one, passes exactly through all {} within {}{unit} of this one.",
-            record.exact.as_ref().map_or("nine points", exact::targets),
+            record.exact.as_ref().map_or_else(|| "nine points".to_owned(), exact::targets),
             significant(proof.radius, 2)
         ));
     }

@@ -25,7 +25,7 @@ impl Nine {
         let solved = match self.solved.take() {
             // Only a requirement has changed, not a point.
             Some(before) if before.target == target => before,
-            Some(before) if before.target.displacements.poses == target.displacements.poses => {
+            Some(before) if before.target.displacements.kind == target.displacements.kind => {
                 resolve_from(&before, &target, &options, cancel).solved
             }
             _ => solve(&target, &options, &|_, _| {}, cancel),

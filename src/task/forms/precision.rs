@@ -4,14 +4,17 @@
 //! Nine is the largest number of points that a four-bar's coupler curve can be made to pass through: a linkage has nine
 //! parameters, and each point with a crank angle of its own takes one of them. A body on the coupler adds its angle there,
 //! and a pose takes two: M poses and N points have finitely many answers if 2 M + N = 10 (the Alt-Burmester problems).
-//! Fewer leave a family, more have no exact answer in general, and with prescribed timing only five points can be met.
+//! A fixed pivot that the problem gives takes two more. Fewer leave a family, more have no exact answer in general, and with
+//! prescribed timing only five points can be met.
 
 use crate::mechanism::Complex;
+use crate::numbers::nine_point::target::Kind;
 use crate::numbers::nine_point::{Target, TargetError};
+use crate::task::pivot_on::PivotOn;
 use crate::task::{Problem, Timing};
 use std::f64::consts::{PI, TAU};
 
-/// The largest number of points that a coupler curve can be made to pass through.
+/// The largest number of points that a coupler curve can be made to pass through; a fixed pivot that is given takes two.
 pub const PRECISION_POINTS: usize = 9;
 
 /// Twice the number of poses and the number of points that a body on the coupler can be made to pass through.
@@ -32,29 +35,50 @@ pub struct Precise {
 impl From<Target> for Precise {
     /// Takes nine points, or a target whose task has its points and poses in the same order.
     fn from(target: Target) -> Precise {
-        Precise { places: (0..=target.displacements.len()).collect(), target }
+        Precise { places: (0..=target.displacements.kind.places()).collect(), target }
     }
 }
 
 /// The reason why a problem has no exact answers to list.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
-    /// The path does not have nine points.
-    #[error("method = \"continuation\" finds linkages through exactly 9 points, this path has {points}")]
+    /// The path does not have as many points as have finitely many answers.
+    #[error(
+        "method = \"continuation\" finds linkages through exactly {wanted} points{}, this path has {points}",
+        given(*pivots)
+    )]
     Points {
         /// Number of points.
         points: usize,
+        /// Number of points that would have finitely many answers.
+        wanted: usize,
+        /// Number of fixed pivots that the problem gives.
+        pivots: usize,
     },
     /// The targets have not as many poses and points as have finitely many answers.
     #[error(
-        "method = \"continuation\" finds linkages through 5 poses, or through 4, 3 or 2 poses with 2, 4 or 6 points; this \
-         task has {poses} with an angle and {points} without"
+        "method = \"continuation\" finds linkages where twice the poses and the points make {wanted}{}; this task has {poses} \
+         with an angle and {points} without",
+        given(*pivots)
     )]
     Motion {
         /// Number of targets with an angle.
         poses: usize,
         /// Number of targets without one.
         points: usize,
+        /// Twice the poses, and the points, that would have finitely many answers.
+        wanted: usize,
+        /// Number of fixed pivots that the problem gives.
+        pivots: usize,
+    },
+    /// So many poses leave one link undetermined and determine the other more than once.
+    #[error(
+        "method = \"continuation\" does not take {poses} poses with one fixed pivot given: one link would have too much to \
+         meet and the other too little"
+    )]
+    Lopsided {
+        /// Number of poses.
+        poses: usize,
     },
     /// The targets are pairs of angles.
     #[error("method = \"continuation\" finds linkages through points and poses, and this task is a function")]
@@ -83,13 +107,14 @@ impl Refusal {
     /// Returns the remedy to suggest.
     pub fn remedy(&self) -> &'static str {
         match self {
-            Refusal::Points { points } if *points < PRECISION_POINTS => {
-                "give 9 points, or write method = \"auto\": fewer points leave a whole family of exact linkages"
+            Refusal::Points { points, wanted, .. } if points < wanted => {
+                "give more points, or write method = \"auto\": so few leave a whole family of exact linkages"
             }
             Refusal::Points { .. } => {
-                "give 9 points, or write method = \"auto\": more points can only be approached"
+                "give fewer points, or write method = \"auto\": so many can only be approached"
             }
-            Refusal::Motion { poses, points } if 2 * poses + points < PRECISION_ROWS => {
+            Refusal::Lopsided { .. } => "write method = \"auto\"",
+            Refusal::Motion { poses, points, wanted, .. } if 2 * poses + points < *wanted => {
                 "add targets, or write method = \"auto\": fewer leave a whole family of exact linkages"
             }
             Refusal::Motion { .. } => "write method = \"auto\": more targets can only be approached",
@@ -99,6 +124,36 @@ impl Refusal {
             Refusal::Coincident { .. } => "move one of the two, or write method = \"auto\"",
         }
     }
+}
+
+/// Returns the words for so many fixed pivots given.
+fn given(pivots: usize) -> &'static str {
+    match pivots {
+        0 => "",
+        1 => " where one fixed pivot is given",
+        _ => " where both fixed pivots are given",
+    }
+}
+
+/// Returns the fixed pivots A and B that the problem gives: by bounds without width, or by a point to be on.
+fn pivots(problem: &Problem) -> [Option<Complex>; 2] {
+    let spec = problem.spec();
+    let on = spec.require.pivot_on.as_ref().map_or([None, None], PivotOn::both);
+    let bounds = [&spec.design.crank_pivot, &spec.design.follower_pivot];
+    std::array::from_fn(|i| {
+        let by_bounds = bounds[i].filter(|[x, y]| x.is_fixed() && y.is_fixed());
+        let by_bounds = by_bounds.map(|[x, y]| Complex::new(x.0, y.0));
+        by_bounds.or_else(|| match on[i]?.fixed() {
+            [Some(x), Some(y)] => Some(Complex::new(x, y)),
+            _ => None,
+        })
+    })
+}
+
+/// Returns the number of poses of a problem, and of fixed pivots that it gives.
+pub fn counted(problem: &Problem) -> (usize, usize) {
+    let poses = problem.task().body().map_or(0, |body| body.angles.iter().flatten().count());
+    (poses, pivots(problem).iter().flatten().count())
 }
 
 /// Returns the points and poses of a problem that has exact answers.
@@ -118,11 +173,18 @@ pub fn precise(problem: &Problem) -> Result<Precise, Refusal> {
         task.body().map_or_else(|| vec![None; points.len()], |body| body.angles.clone());
     let poses: Vec<usize> = (0..points.len()).filter(|j| angles[*j].is_some()).collect();
     let free: Vec<usize> = (0..points.len()).filter(|j| angles[*j].is_none()).collect();
-    if poses.is_empty() && points.len() != PRECISION_POINTS {
-        return Err(Refusal::Points { points: points.len() });
+    let given: Vec<Complex> = pivots(problem).into_iter().flatten().collect();
+    let wanted = PRECISION_POINTS - 2 * given.len();
+    if poses.is_empty() && points.len() != wanted {
+        return Err(Refusal::Points { points: points.len(), wanted, pivots: given.len() });
     }
-    if !poses.is_empty() && 2 * poses.len() + free.len() != PRECISION_ROWS {
-        return Err(Refusal::Motion { poses: poses.len(), points: free.len() });
+    let wanted = PRECISION_ROWS - 2 * given.len();
+    if !poses.is_empty() && 2 * poses.len() + free.len() != wanted {
+        return Err(Refusal::Motion { poses: poses.len(), points: free.len(), wanted, pivots: given.len() });
+    }
+    let kind = Kind { poses: poses.len().saturating_sub(1), pivots: given.len() };
+    if kind.classes() == 0 {
+        return Err(Refusal::Lopsided { poses: poses.len() });
     }
     for second in 1..points.len() {
         for first in 0..second {
@@ -151,6 +213,6 @@ pub fn precise(problem: &Problem) -> Result<Precise, Refusal> {
     let of_points: Vec<Complex> = others().filter(|o| o.1.is_none()).map(|o| o.0).collect();
     let of_poses: Vec<(Complex, f64)> =
         others().filter_map(|(point, angles)| angles.map(|(own, first)| (point, own - first))).collect();
-    let target = Target::with_poses(points[first], &of_points, &of_poses)?;
+    let target = Target::mixed(points[first], &of_points, &of_poses, &given)?;
     Ok(Precise { target, places })
 }
