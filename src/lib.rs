@@ -72,8 +72,9 @@ pub use judge::certificate::{NoCertificate, Request as CertificateRequest, certi
 pub use judge::verify::{Mismatch, verify};
 pub use mechanism::four_bar::cognate::Cognate;
 pub use mechanism::{
-    AssemblyMode, Chain, ChainBuilder, Complex, CouplerCurve, CouplerSide, FourBar, Joints, Linkage,
-    LinkageError, LinkageType, Mobility, NaturalCoordinates, Position, Unit, VectorLoop,
+    AssemblyMode, Chain, ChainBuilder, Complex, CouplerCurve, CouplerSide, FourBar, InvertedSliderCrank,
+    InvertedSliderCrankParameters, Joints, Linkage, LinkageError, LinkageType, Mobility, NaturalCoordinates,
+    Position, SliderCrank, SliderCrankParameters, SliderLinkage, Unit, VectorLoop,
 };
 pub use record::{Candidate, Certificate, Record};
 pub use report::export::{

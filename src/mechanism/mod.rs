@@ -1,4 +1,4 @@
-//! Mechanisms: the four-bar and the chain, their motion, the dyads that guide a body, their links as plates, the units of their lengths.
+//! Mechanisms: the four-bar, the slider-crank and its inversion, and the chain, their motion, the dyads that guide a body, their links as plates, the units of their lengths.
 //!
 //! | module | holds |
 //! |---|---|
@@ -8,7 +8,10 @@
 //! | [`dyad`] | poses of a body, and the dyads that guide it |
 //! | [`effort`] | counter of linkage positions computed between two checks for a stop, in this crate's own tests; elsewhere it does nothing |
 //! | [`four_bar`] | planar four-bar linkages: parameters, position, motion, mobility, coupler curve and cognates |
+//! | [`inverted_slider_crank`] | planar inverted slider-cranks, whose coupler slides through a block at a fixed pivot |
 //! | [`plates`] | the links as flat plates with holes at the joints, which can be cut out |
+//! | [`slider`] | linkages of one loop with a slider: what the slider-crank and the inverted slider-crank have in common |
+//! | [`slider_crank`] | planar slider-cranks, whose coupler ends on a block that slides along a fixed line |
 //! | [`mod@unit`] | the units that label lengths |
 
 pub mod analysis;
@@ -17,7 +20,10 @@ pub mod chain;
 pub mod dyad;
 pub(crate) mod effort;
 pub mod four_bar;
+pub mod inverted_slider_crank;
 pub mod plates;
+pub mod slider;
+pub mod slider_crank;
 mod unit;
 
 pub use crate::numbers::arithmetic::{
@@ -32,4 +38,7 @@ pub use four_bar::{
     Joints, LinkageError, LinkageType, MAX_MAGNITUDE, Mobility, NaturalCoordinates, OnCircuit, Position,
     Toggle, VectorLoop,
 };
+pub use inverted_slider_crank::{InvertedSliderCrank, InvertedSliderCrankParameters};
+pub use slider::{SliderJoints, SliderLinkage, SliderPosition};
+pub use slider_crank::{SliderCrank, SliderCrankParameters};
 pub use unit::Unit;

@@ -404,7 +404,7 @@ impl Line {
 }
 
 /// Returns the |V|^2 at and below which two points of a mechanism of this scale coincide.
-pub(super) fn coincident_sq(scale: f64) -> f64 {
+pub(in crate::mechanism) fn coincident_sq(scale: f64) -> f64 {
     let nearest = COINCIDENT_ROUNDINGS * f64::EPSILON * scale;
     nearest * nearest
 }
