@@ -3,7 +3,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`analysis`] | analysis of a given linkage: positions, velocities and accelerations at crank angles, by one method or by several side by side, in one configuration or in all four |
-//! | [`any`] | a linkage of any kind |
+//! | [`any`] | a linkage of any kind, and the trait by which each kind tells its joints, rates, range and links |
 //! | [`chain`] | chains: compound mechanisms of a driven crank and stages, each attached to points that are already known, with the position in closed form |
 //! | [`dyad`] | poses of a body, and the dyads that guide it |
 //! | [`effort`] | counter of linkage positions computed between two checks for a stop, in this crate's own tests; elsewhere it does nothing |
@@ -15,7 +15,7 @@
 //! | [`mod@unit`] | the units that label lengths |
 
 pub mod analysis;
-mod any;
+pub mod any;
 pub mod chain;
 pub mod dyad;
 pub(crate) mod effort;
@@ -30,7 +30,9 @@ pub use crate::numbers::arithmetic::{
     Complex, bounding_box, cross, dot, least_and_greatest, length, nearest_share, point, turned, unit_vector,
     xy,
 };
-pub use any::Linkage;
+pub use any::{
+    CrankRange, Link, Linkage, Mechanism, MechanismMotion, MechanismPose, Output, OutputRate, Slide, Status,
+};
 pub use chain::{Chain, ChainBuilder};
 pub use dyad::{Dyad, Pose};
 pub use four_bar::{

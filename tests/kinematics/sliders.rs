@@ -6,9 +6,9 @@ use linkwright::internals::mechanism::four_bar::positions::JointColumns;
 use linkwright::internals::mechanism::slider::SliderMotion;
 use linkwright::internals::mechanism::slider::motion::motion;
 use linkwright::internals::mechanism::{
-    AssemblyMode, Chain, ChainBuilder, Circuit, Complex, CouplerCurve, InputRange, InvertedSliderCrank,
-    InvertedSliderCrankParameters, LinkageError, SliderCrank, SliderCrankParameters, SliderLinkage,
-    SliderPosition, cross, dot, xy,
+    AssemblyMode, Chain, ChainBuilder, Circuit, Complex, CouplerCurve, FourBar, InputRange,
+    InvertedSliderCrank, InvertedSliderCrankParameters, Linkage, LinkageError, Mechanism, SliderCrank,
+    SliderCrankParameters, SliderLinkage, SliderPosition, Status, cross, dot, xy,
 };
 use linkwright::internals::numbers::arithmetic::streams::{stream, uniform};
 use num_dual::{Dual64, DualNum};
@@ -549,4 +549,85 @@ fn the_smallest_and_the_largest_numbers_give_no_false_position() {
             }
         }
     }
+}
+
+/// Compares what two mechanisms tell of the joints that both have, at an angle away from toggles.
+fn tell_the_same(one: &dyn Mechanism, other: &dyn Mechanism, phi: f64, sine: f64) {
+    let input = CrankMotion { speed_rad_s: 1.1, acceleration_rad_s2: 0.4 };
+    let [at, its] = [one.motion_at(phi, input), other.motion_at(phi, input)];
+    assert_eq!((at.pose.status, its.pose.status), (Status::Ok, Status::Ok), "{}", one.kind());
+    assert_eq!(one.pose_at(phi).joints, at.pose.joints);
+    let names = other.joint_names();
+    let largest = its.accelerations.iter().flatten().fold(1.0_f64, |most, a| most.max(a.norm()));
+    let slack = 1e-12 * largest * SCALE / (sine * sine);
+    for (i, name) in one.joint_names().into_iter().enumerate() {
+        let Some(j) = names.iter().position(|n| *n == name) else { continue };
+        let pairs = [
+            (&at.pose.joints, &its.pose.joints),
+            (&at.velocities, &its.velocities),
+            (&at.accelerations, &its.accelerations),
+        ];
+        for (k, (here, there)) in pairs.into_iter().enumerate() {
+            let off = (here[i].expect("known") - there[j].expect("known")).norm();
+            // A chain has no velocity of its own for what does not move.
+            assert!(off <= slack, "{} {phi} {name} {k}: {off:e}", one.kind());
+        }
+    }
+    let (mine, its) = (one.crank_range(), other.crank_range());
+    let wide = mine.arcs.iter().all(|[from, to]| to - from > 0.05);
+    if !wide || mine.margin.is_some_and(|margin| margin.abs() < 0.05) {
+        return;
+    }
+    assert_eq!(mine.turns_fully, its.turns_fully, "{}", one.kind());
+    let mut ends = its.arcs.as_flattened().iter();
+    assert!(mine.arcs.len() == its.arcs.len(), "{mine:?} {its:?}");
+    for end in mine.arcs.as_flattened() {
+        assert!(ends.clone().any(|e| cross_angle(*e, *end).abs() < 1e-5), "{mine:?} {its:?}");
+    }
+    assert!(ends.all(|e| mine.toggles.iter().any(|t| cross_angle(*e, *t).abs() < 1e-5)), "{mine:?} {its:?}");
+}
+
+#[test]
+fn every_kind_tells_what_its_chain_tells() {
+    let mut compared = [0; 2];
+    for index in 0..400 {
+        let (linkage, phi) = slider_crank(index);
+        let chain = linkage.to_chain().expect("a chain");
+        let sine = |joints| linkage.sine(&joints).0.abs();
+        if let Some(sine) = linkage.position(phi).joints().map(sine).filter(|sine| *sine > SINE) {
+            let linkage = Linkage::SliderCrank(linkage);
+            tell_the_same(linkage.mechanism(), Linkage::Chain(Box::new(chain)).mechanism(), phi, sine);
+            compared[0] += 1;
+        }
+        let (linkage, phi) = inverted(index);
+        let chain = linkage.to_chain().expect("a chain");
+        let sine = |joints| linkage.sine(&joints).0.abs();
+        if let Some(sine) = linkage.position(phi).joints().map(sine).filter(|sine| *sine > SINE) {
+            let linkage = Linkage::InvertedSliderCrank(linkage);
+            tell_the_same(linkage.mechanism(), Linkage::Chain(Box::new(chain)).mechanism(), phi, sine);
+            compared[1] += 1;
+        }
+    }
+    assert!(compared.iter().all(|count| *count > 200), "{compared:?}");
+    let four_bar = FourBar::with_coupler_offset(
+        [Complex::new(0.0, 0.0), Complex::new(4.0, 1.0)],
+        [2.0, 5.0, 5.0],
+        Complex::new(2.5, 4.0),
+        Plus,
+    )
+    .expect("lengths");
+    let chain = ChainBuilder::new()
+        .pivot("A", [0.0, 0.0])
+        .pivot("B", [4.0, 1.0])
+        .crank("A", "C", 2.0)
+        .dyad("D", ["C", "B"], [5.0, 5.0], Plus)
+        .point("P", ["C", "D"], [2.5, 4.0])
+        .build()
+        .expect("a chain");
+    for i in 0..36 {
+        let (one, other) = (Linkage::FourBar(four_bar), Linkage::Chain(Box::new(chain.clone())));
+        tell_the_same(one.mechanism(), other.mechanism(), f64::from(i) * 0.17, 0.5);
+    }
+    assert_eq!(Mechanism::moving_links(&four_bar).len(), 3);
+    assert_eq!(chain.moving_links()[0].length, Some(2.0));
 }

@@ -13,9 +13,11 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | `kind` | the linkages with a slider as mechanisms of any kind |
 //! | [`mobility`] | whether the crank turns fully, and the circuits, branches and toggles of a linkage with a slider |
 //! | [`motion`] | velocity and acceleration of the joints, the coupler and the slider |
 
+mod kind;
 pub mod mobility;
 pub mod motion;
 
