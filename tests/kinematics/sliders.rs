@@ -71,7 +71,7 @@ fn agrees_with_chain<L: SliderLinkage>(linkage: &L, chain: &Chain, phi: f64) -> 
         for (name, at) in [("C", joints.crank_pin), ("D", joints.slider_pin), ("P", joints.coupler_point)] {
             let Some(id) = chain.point_id(name) else { continue };
             let off = (pose.point(id).expect("closed") - at).norm();
-            assert!(off <= 1e-12 * SCALE, "{linkage:?} {phi} {name} {off:e}");
+            assert!(off <= 1e-12, "{linkage:?} {phi} {name} {off:e}");
         }
     }
     closed
@@ -569,7 +569,6 @@ fn tell_the_same(one: &dyn Mechanism, other: &dyn Mechanism, phi: f64, sine: f64
         ];
         for (k, (here, there)) in pairs.into_iter().enumerate() {
             let off = (here[i].expect("known") - there[j].expect("known")).norm();
-            // A chain has no velocity of its own for what does not move.
             assert!(off <= slack, "{} {phi} {name} {k}: {off:e}", one.kind());
         }
     }
