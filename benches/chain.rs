@@ -15,7 +15,7 @@ fn shipped(name: &str) -> Chain {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/linkages/{name}.toml"));
     match linkage_file::load_any(&path).expect("it is shipped").linkage {
         Linkage::Chain(chain) => *chain,
-        Linkage::FourBar(_) => panic!("{name} is a chain"),
+        _ => panic!("{name} is no chain"),
     }
 }
 

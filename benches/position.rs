@@ -7,7 +7,11 @@ mod coupler_points;
 use coupler_points::CouplerPoints;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use linkwright::internals::mechanism::four_bar::position::Kernel;
-use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+use linkwright::internals::mechanism::four_bar::positions::JointColumns;
+use linkwright::internals::mechanism::{
+    AssemblyMode, Complex, CouplerSide, FourBar, InvertedSliderCrank, NaturalCoordinates, SliderCrank,
+    SliderLinkage, xy,
+};
 use linkwright::internals::numbers::arithmetic::dispatch::vectorised;
 use linkwright::internals::numbers::arithmetic::lane::{F64x8, Lane};
 use std::f64::consts::TAU;
@@ -143,5 +147,54 @@ fn bound(x: &[f64], out: &mut [f64]) {
     );
 }
 
-criterion_group!(benches, positions);
+/// The kernels of the linkages with a slider, eight at a time and alone, both from the angle.
+fn sliders(c: &mut Criterion) {
+    let (zero, z) = (Complex::new(0.0, 0.0), Complex::new(5.0, 1.0));
+    let line = (Complex::new(0.0, 1.0), 0.3);
+    let slider = SliderCrank::from_parts(zero, [2.0, 5.0], line, z, AssemblyMode::Plus).expect("lengths");
+    let pivots = [zero, Complex::new(4.0, 1.0)];
+    let inverted = InvertedSliderCrank::from_parts(pivots, 2.0, 0.5, z, AssemblyMode::Plus).expect("lengths");
+    let mut group = c.benchmark_group(format!("slider position ({})", vector_unit()));
+    group.throughput(Throughput::Elements(POSITIONS as u64));
+    slider_row(&mut group, "slider-crank", &slider);
+    slider_row(&mut group, "inverted slider-crank", &inverted);
+    group.finish();
+}
+
+fn slider_row<L: SliderLinkage>(
+    group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>,
+    name: &str,
+    linkage: &L,
+) {
+    let angles: Vec<f64> = (0..POSITIONS).map(|i| TAU * i as f64 / POSITIONS as f64).collect();
+    let mut columns = [(); 3].map(|()| vec![[0.0; 2]; POSITIONS]);
+    let fill = |[c, d, p]: &mut [Vec<[f64; 2]>; 3], angles: &[f64]| {
+        linkage.positions(angles, JointColumns { crank_pin: c, follower_pin: d, coupler_point: p });
+    };
+    fill(&mut columns, &angles);
+    for (i, angle) in angles.iter().enumerate() {
+        let at = linkage.position(*angle).joints().expect("the crank turns fully");
+        let lanes = columns.each_ref().map(|column| column[i]);
+        let alone = [at.crank_pin, at.slider_pin, at.coupler_point].map(xy);
+        assert_eq!(lanes, alone, "lanes and scalar agree to the bit");
+    }
+    group.bench_function(format!("{name}, lanes, from the angle"), |b| {
+        b.iter(|| {
+            fill(black_box(&mut columns), black_box(&angles));
+        });
+    });
+    group.bench_function(format!("{name}, scalar, from the angle"), |b| {
+        b.iter(|| {
+            let mut sum = 0.0;
+            for angle in &angles {
+                if let Some(joints) = linkage.position(black_box(*angle)).joints() {
+                    sum += joints.coupler_point.re;
+                }
+            }
+            black_box(sum)
+        });
+    });
+}
+
+criterion_group!(benches, positions, sliders);
 criterion_main!(benches);

@@ -16,7 +16,7 @@ use linkwright::internals::files::linkage_file::{self, AnyLinkageFile, LinkageFi
 use linkwright::internals::files::name;
 use linkwright::internals::files::schema::{SchemaKind, schema as schema_of};
 use linkwright::internals::mechanism::Linkage;
-use linkwright::internals::mechanism::analysis::chain::{ChainRequest, analyze_chain};
+use linkwright::internals::mechanism::analysis::driven::{MechanismRequest, analyze_mechanism};
 use linkwright::internals::mechanism::analysis::{
     PositionMethod, Request as Analysis, analyze as analyze_four_bar, full_turn,
 };
@@ -25,8 +25,8 @@ use linkwright::internals::report::Colour;
 use linkwright::internals::report::analysis_csv::analysis_csv;
 use linkwright::internals::report::analysis_sheets::analysis_svg;
 use linkwright::internals::report::analysis_text::analysis_table;
-use linkwright::internals::report::chain_sheet::chain_svg;
-use linkwright::internals::report::chain_text::{chain_csv, chain_table};
+use linkwright::internals::report::mechanism_sheet::mechanism_svg;
+use linkwright::internals::report::mechanism_text::{mechanism_csv, mechanism_table};
 use linkwright::internals::report::compare::SortKey;
 use linkwright::internals::report::snap::snap_text;
 use linkwright::internals::report::suite::{suite_markdown, suite_text};
@@ -106,6 +106,12 @@ fn of_file<'py>(py: Python<'py>, file: AnyLinkageFile, text: String) -> PyResult
             Bound::new(py, FourBar { file: LinkageFile { name, unit, linkage } })?.into_any()
         }
         Linkage::Chain(chain) => Bound::new(py, Chain { name, unit, chain: *chain, text })?.into_any(),
+        other @ (Linkage::SliderCrank(_) | Linkage::InvertedSliderCrank(_)) => {
+            return Err(refused(format!(
+                "{name} is {}: analyze takes its file, and no class holds it yet",
+                linkage_file::kind_in_words(&other)
+            )));
+        }
     })
 }
 
@@ -200,16 +206,17 @@ pub fn analyze<'py>(
                 })?
                 .map_err(refused)
             }
-            Linkage::Chain(_) if all_configurations || !methods.is_empty() => Err(refused(
-                "all_configurations and method are for four-bars; this is a chain, whose signs stand in its file",
-            )),
-            Linkage::Chain(chain) => {
-                let request = ChainRequest { name, unit, chain: *chain, crank_deg, input };
+            other if all_configurations || !methods.is_empty() => Err(refused(format!(
+                "all_configurations and method are for four-bars; this is {}, whose signs stand in its file",
+                linkage_file::kind_in_words(&other)
+            ))),
+            linkage => {
+                let request = MechanismRequest { name, unit, linkage, crank_deg, input };
                 run_whole(py, move |_| {
-                    let found = analyze_chain(&request);
+                    let found = analyze_mechanism(&request);
                     let json = serde_json::to_string(&found).map_err(|e| e.to_string())?;
-                    let svg = chain_svg(&found, &request.chain);
-                    Ok::<_, String>([json, chain_table(&found, Colour::Never), chain_csv(&found), svg])
+                    let svg = mechanism_svg(&found, &request.linkage);
+                    Ok::<_, String>([json, mechanism_table(&found, Colour::Never), mechanism_csv(&found), svg])
                 })?
                 .map_err(refused)
             }

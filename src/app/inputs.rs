@@ -140,7 +140,7 @@ pub fn read(argument: &Path) -> Result<Given, NotRead> {
     Ok(Given::Run(Box::new(read_run(argument)?)))
 }
 
-/// Reads one linkage, a chain or a four-bar: of a result it is the candidate that is named, else the first.
+/// Reads one linkage of any kind: of a result it is the candidate that is named, else the first.
 ///
 /// # Errors
 /// [`NotRead`].

@@ -6,7 +6,7 @@
 //! | [`diagnostic`] | diagnostics: error messages about a text that a person wrote, with the place, the fault and the remedy |
 //! | [`generator`] | the generator mark of written files: every file that a person names bears it, and a file without it is never replaced |
 //! | [`input_text`] | reading of an input file as text: bounded in size, with a remedy for each way in which it can fail |
-//! | [`linkage_file`] | linkage files: a four-bar in natural coordinates or as a vector loop, or a chain of stages |
+//! | [`linkage_file`] | linkage files: a four-bar in natural coordinates or as a vector loop, a linkage with a slider, or a chain of stages |
 //! | [`name`] | names of problems and linkages, which become names of folders |
 //! | [`points_file`] | points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`; `#` comments |
 //! | [`problem_file`] | problem files: TOML is read, and a `ProblemSpec` with every default filled in is returned |

@@ -175,10 +175,11 @@ impl<'a> TomlText<'a> {
         }
         if key == "task" && allowed.contains(&"vector_loop") {
             return self.about_file("this is a problem file, not a linkage file").with_help(
-                "`linkwright synth` runs it; a linkage file has [linkage], [vector_loop] or [chain]",
+                "`linkwright synth` runs it; a linkage file has [linkage], [vector_loop], [slider_crank], \
+                 [inverted_slider_crank] or [chain]",
             );
         }
-        if matches!(key, "linkage" | "vector_loop" | "chain")
+        if matches!(key, "linkage" | "vector_loop" | "slider_crank" | "inverted_slider_crank" | "chain")
             && allowed.contains(&"task")
             && self.place("task").is_none()
         {

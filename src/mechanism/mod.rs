@@ -1,30 +1,38 @@
-//! Mechanisms: the four-bar and the chain, their motion, the dyads that guide a body, their links as plates, the units of their lengths.
+//! Mechanisms: the four-bar, the slider-crank and its inversion, and the chain, their motion, the dyads that guide a body, their links as plates, the units of their lengths.
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`analysis`] | analysis of a given linkage: positions, velocities and accelerations at crank angles, by one method or by several side by side, in one configuration or in all four |
-//! | [`any`] | a linkage of any kind |
+//! | [`any`] | a linkage of any kind, and the trait by which each kind tells its joints, rates, range and links |
 //! | [`chain`] | chains: compound mechanisms of a driven crank and stages, each attached to points that are already known, with the position in closed form |
 //! | [`dyad`] | poses of a body, and the dyads that guide it |
 //! | [`effort`] | counter of linkage positions computed between two checks for a stop, in this crate's own tests; elsewhere it does nothing |
 //! | [`four_bar`] | planar four-bar linkages: parameters, position, motion, mobility, coupler curve and cognates |
+//! | [`inverted_slider_crank`] | planar inverted slider-cranks, whose coupler slides through a block at a fixed pivot |
 //! | [`plates`] | the links as flat plates with holes at the joints, which can be cut out |
+//! | [`slider`] | linkages of one loop with a slider: what the slider-crank and the inverted slider-crank have in common |
+//! | [`slider_crank`] | planar slider-cranks, whose coupler ends on a block that slides along a fixed line |
 //! | [`mod@unit`] | the units that label lengths |
 
 pub mod analysis;
-mod any;
+pub mod any;
 pub mod chain;
 pub mod dyad;
 pub(crate) mod effort;
 pub mod four_bar;
+pub mod inverted_slider_crank;
 pub mod plates;
+pub mod slider;
+pub mod slider_crank;
 mod unit;
 
 pub use crate::numbers::arithmetic::{
     Complex, bounding_box, cross, dot, least_and_greatest, length, nearest_share, point, turned, unit_vector,
     xy,
 };
-pub use any::Linkage;
+pub use any::{
+    CrankRange, Link, Linkage, Mechanism, MechanismMotion, MechanismPose, Output, OutputRate, Slide, Status,
+};
 pub use chain::{Chain, ChainBuilder};
 pub use dyad::{Dyad, Pose};
 pub use four_bar::{
@@ -32,4 +40,7 @@ pub use four_bar::{
     Joints, LinkageError, LinkageType, MAX_MAGNITUDE, Mobility, NaturalCoordinates, OnCircuit, Position,
     Toggle, VectorLoop,
 };
+pub use inverted_slider_crank::{InvertedSliderCrank, InvertedSliderCrankParameters};
+pub use slider::{SliderJoints, SliderLinkage, SliderPosition};
+pub use slider_crank::{SliderCrank, SliderCrankParameters};
 pub use unit::Unit;

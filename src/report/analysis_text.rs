@@ -131,7 +131,8 @@ pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
     indented(&words)
 }
 
-fn degrees(value: f64) -> String {
+/// Returns an angle in degrees with its sign of degrees.
+pub(super) fn degrees(value: f64) -> String {
     format!("{}°", significant(value, 6))
 }
 
@@ -148,7 +149,7 @@ pub(super) fn input(omega2_rad_s: f64, alpha2_rad_s2: f64) -> String {
 }
 
 /// Returns a number shown beside others of the given size; a number that is only rounding in comparison is shown as 0.
-fn number(value: Option<f64>, size: f64) -> Cell {
+pub(super) fn number(value: Option<f64>, size: f64) -> Cell {
     let shown = |v: f64| if v.abs() <= ROUNDING * size { 0.0 } else { v };
     plain(value.map_or_else(|| NO_NUMBER.to_owned(), |v| significant(shown(v), DIGITS)))
 }

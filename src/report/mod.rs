@@ -13,7 +13,7 @@
 //! | a page | [`svg::candidate_svg`], [`contact_sheet::contact_sheet_svg`], [`exact_sheet::exact_svg`] |
 //! | a browser | [`html::report_html`], [`html::front_html`] |
 //! | a spreadsheet | [`csv::candidates_csv`], [`csv::front_csv`], [`csv::curve_csv`] |
-//! | a linkage by itself | [`analysis_sheets::analysis_svg`], [`cognates_sheet::cognates_svg`] |
+//! | a linkage by itself | [`analysis_sheets::analysis_svg`], [`mechanism_sheet::mechanism_svg`], [`cognates_sheet::cognates_svg`] |
 //! | several results | [`compare::compare`] |
 //! | a suite of problems | [`suite::suite_text`], [`suite::suite_markdown`] |
 //!
@@ -28,8 +28,6 @@
 //! | `body` | the body of a motion, or the follower of a function, at the positions of a candidate: its angles and their errors |
 //! | [`canvas`] | the SVG shapes of the drawings, in pixels with y down, and the view that maps the plane to the canvas, with y up |
 //! | [`certificate`] | the certificate of a result, and the number of times its best answer was found, in words |
-//! | [`chain_sheet`] | a drawing of a compound mechanism at one position, with other positions drawn faintly and the path of its traced point |
-//! | [`chain_text`] | an analysis of a compound mechanism as text and as CSV |
 //! | [`chart`] | a chart of a few series against the crank angle |
 //! | [`cognates_sheet`] | Roberts' figure: a linkage and its cognates in one position, with the coupler curve that they share |
 //! | [`compare`] | comparison of linkages from several results: ranked by chosen figures, with the Pareto front of error, worst transmission angle and size marked, and differences from a chosen one in per cent |
@@ -44,6 +42,8 @@
 //! | [`grid`] | a table of text with aligned columns, and the colours of a terminal |
 //! | [`html`] | a run as an HTML page in one file: the linkage moving over its target, with every figure and verdict |
 //! | [`labels`] | placement of labels beside their points, where they hide least |
+//! | [`mechanism_sheet`] | a drawing of a linkage of any kind at one position, with other positions drawn faintly and the path of its traced point |
+//! | [`mechanism_text`] | an analysis of a linkage of any kind as text and as CSV |
 //! | [`parts`] | the parts of drawings of linkages: stands, bars, the coupler's triangle, letters |
 //! | [`picks`] | the picks beside the closest candidate, in words |
 //! | [`plot`] | a small plot for the terminal: the target points and the coupler curve, with one scale for both axes |
@@ -69,8 +69,6 @@ mod bodies;
 mod body;
 mod canvas;
 pub mod certificate;
-pub mod chain_sheet;
-pub mod chain_text;
 mod chart;
 pub mod cognates_sheet;
 pub mod compare;
@@ -85,6 +83,8 @@ mod function;
 pub mod grid;
 pub mod html;
 mod labels;
+pub mod mechanism_sheet;
+pub mod mechanism_text;
 mod parts;
 mod picks;
 pub mod plot;

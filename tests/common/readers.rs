@@ -17,7 +17,7 @@ use linkwright::internals::files::svg_file;
 use linkwright::internals::files::svg_file::SvgOptions;
 use linkwright::internals::judge::verify;
 use linkwright::internals::mechanism::Linkage;
-use linkwright::internals::mechanism::analysis::chain::{ChainRequest, analyze_chain};
+use linkwright::internals::mechanism::analysis::driven::{MechanismRequest, analyze_mechanism};
 use linkwright::internals::mechanism::analysis::{PositionMethod, Request, analyze, full_turn};
 use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
 use linkwright::internals::record::Record;
@@ -25,7 +25,7 @@ use linkwright::internals::record::digest::digest;
 use linkwright::internals::report::compare::{Entry, SortKey, compare};
 use linkwright::internals::report::plot::{Glyphs, terminal_plot};
 use linkwright::internals::report::{
-    Colour, analysis_csv, analysis_sheets, analysis_text, chain_sheet, chain_text, cognates_sheet,
+    Colour, analysis_csv, analysis_sheets, analysis_text, cognates_sheet, mechanism_sheet, mechanism_text,
 };
 use linkwright::internals::report::{contact_sheet, csv, exact, exact_sheet, html, svg, table};
 use linkwright::internals::synthesis::keeper::{Keeper, SearchState};
@@ -98,7 +98,7 @@ pub fn setting(bytes: &[u8]) {
     }
 }
 
-/// Linkage files: four-bars, vector loops, chains.
+/// Linkage files of every kind.
 pub fn linkage(bytes: &[u8]) {
     let Some(text) = text(bytes) else { return };
     let AnyLinkageFile { name, unit, linkage } = match linkage_file::parse_any("a linkage.toml", text) {
@@ -123,13 +123,25 @@ pub fn linkage(bytes: &[u8]) {
             let cognates: Vec<_> = linkage.cognates().into_iter().flatten().map(|c| c.linkage).collect();
             cognates_sheet::cognates_svg("name", unit, &linkage, &cognates);
         }
-        Linkage::Chain(chain) => {
-            let request = ChainRequest { name, unit, chain: *chain, crank_deg, input };
-            let analysis = analyze_chain(&request);
-            chain_sheet::chain_svg(&analysis, &request.chain);
-            chain_text::chain_csv(&analysis);
-            chain_text::chain_head(&analysis, Colour::Never);
-            chain_text::chain_table(&analysis, Colour::Never);
+        linkage => {
+            let again = match &linkage {
+                Linkage::SliderCrank(l) => Some(linkage_file::slider_crank_to_toml(&name, unit, l)),
+                Linkage::InvertedSliderCrank(l) => {
+                    Some(linkage_file::inverted_slider_crank_to_toml(&name, unit, l))
+                }
+                Linkage::FourBar(_) | Linkage::Chain(_) => None,
+            };
+            if let Some(again) = again {
+                let again =
+                    linkage_file::parse_any("again.toml", &again).expect("what was written can be read");
+                assert_eq!(again.linkage, linkage);
+            }
+            let request = MechanismRequest { name, unit, linkage, crank_deg, input };
+            let analysis = analyze_mechanism(&request);
+            mechanism_sheet::mechanism_svg(&analysis, &request.linkage);
+            mechanism_text::mechanism_csv(&analysis);
+            mechanism_text::mechanism_head(&analysis, Colour::Never);
+            mechanism_text::mechanism_table(&analysis, Colour::Never);
         }
     }
 }

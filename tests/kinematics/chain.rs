@@ -21,7 +21,7 @@ fn shipped(name: &str) -> Chain {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/linkages/{name}.toml"));
     match linkage_file::load_any(&path).unwrap_or_else(|d| panic!("{d}")).linkage {
         Linkage::Chain(chain) => *chain,
-        Linkage::FourBar(_) => panic!("{name} is a four-bar"),
+        _ => panic!("{name} is no chain"),
     }
 }
 

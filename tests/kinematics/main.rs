@@ -16,3 +16,4 @@ mod random;
 mod referee;
 #[path = "../reference/mod.rs"]
 mod reference;
+mod sliders;

@@ -247,3 +247,112 @@ fn a_chain_that_cannot_turn_says_where_it_opens() {
     let csv = fs::read_to_string(folder.path().join("out.csv")).expect("written");
     assert!(csv.lines().nth(2).expect("a row").contains(",,") && !csv.contains("NaN"), "{csv}");
 }
+
+const SLIDER_COLUMNS: &str =
+    "coupler_deg,transmission_deg,omega3_rad_s,alpha3_rad_s2,slider,slider_speed,slider_acceleration,status";
+
+#[test]
+fn linkages_with_a_slider_are_analysed_with_every_joint_and_the_slider() {
+    let folder = TempDir::new().expect("a folder");
+    // In line, 3-4-5, and its inversion: crank 3 upright, the slider is 4 ahead; B is 4 ahead, 5 from C.
+    let slider = "format = 1\n[slider_crank]\nA = [0, 0]\na = 3\nb = 5\nline_point = [0, 0]\nline_deg = 0\n\
+                  coupler_x = 2.5\ncoupler_y = 0\nt1 = 1\n";
+    let inverted = "format = 1\n[inverted_slider_crank]\nA = [0, 0]\nB = [4, 0]\na = 3\noffset = 0\n\
+                    coupler_x = 10\ncoupler_y = 0\nt1 = 1\n";
+    for (text, kind, place, joints) in [
+        (slider, "slider-crank", 4.0, "crank_deg,Cx,Cy,vCx,vCy,aCx,aCy,Dx,Dy,"),
+        (inverted, "inverted-slider-crank", 5.0, "crank_deg,Cx,Cy,vCx,vCy,aCx,aCy,Dx,Dy,"),
+    ] {
+        fs::write(folder.path().join("it.toml"), text).expect("written");
+        let run =
+            linkwright(folder.path(), &["analyze", "it.toml", "--angle", "90", "--omega", "2", "--json"]);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let value: serde_json::Value = serde_json::from_str(&run.stdout).expect("JSON");
+        assert_eq!((&value["kind"], &value["circuits"]), (&kind.into(), &2.into()));
+        let row = &value["rows"][0];
+        assert!((row["slider"].as_f64().expect("a number") - place).abs() < 1e-14, "{row}");
+        // The slider-crank's slider goes back with the pin, the rod turns about no point; by hand, psi' of the inversion
+        // is a sin(angle) / distance = 2 * 3 * 3/25.
+        let (speed, turning) = if kind == "slider-crank" { (-6.0, 0.0) } else { (4.8, 0.72) };
+        assert!((row["slider_speed"].as_f64().expect("a number") - speed).abs() < 1e-13, "{row}");
+        assert!((row["omega3_rad_s"].as_f64().expect("a number") - turning).abs() < 1e-13, "{row}");
+        let files =
+            ["analyze", "it.toml", "--cycle", "100", "--rpm", "60", "--csv", "it.csv", "--svg", "it.svg"];
+        let run = linkwright(folder.path(), &[&files[..], &["--force"]].concat());
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        assert!(
+            run.stdout.contains("The slider moves") && run.stdout.contains("2 circuits"),
+            "{}",
+            run.stdout
+        );
+        let csv = fs::read_to_string(folder.path().join("it.csv")).expect("written");
+        let head = csv.lines().next().expect("a head");
+        assert!(head.starts_with(joints) && head.ends_with(SLIDER_COLUMNS), "{head}");
+        assert!(csv.lines().skip(1).all(|line| line.ends_with(",ok") && !line.contains("NaN")), "{csv}");
+        let svg = fs::read_to_string(folder.path().join("it.svg")).expect("written");
+        roxmltree::Document::parse(&svg).expect("it is XML");
+        assert!(!svg.contains("NaN"));
+        let check = linkwright(folder.path(), &["check", "it.toml"]);
+        assert!(check.code == 0 && check.stdout.contains(&kind.replace("inverted-", "inverted ")));
+        let refused = linkwright(folder.path(), &["analyze", "it.toml", "--method", "algebraic"]);
+        assert!(refused.code == 2 && refused.stderr.contains("for four-bars"), "{}", refused.stderr);
+        for command in [
+            &["cognates", "it.toml"][..],
+            &["build", "it.toml"],
+            &["export", "it.toml", "--format", "dxf"],
+            &["snap", "it.toml", "--grid", "1"],
+            &["compare", "it.toml", "it.toml"],
+            &["synth", "it.toml"],
+        ] {
+            let refused = linkwright(folder.path(), command);
+            assert_eq!(refused.code, 2, "{command:?}: {}", refused.stderr);
+            let plain = ["slider-crank", "linkage file"].iter().any(|words| refused.stderr.contains(words));
+            assert!(plain && !refused.stderr.contains("panicked"), "{command:?}: {}", refused.stderr);
+        }
+    }
+}
+
+#[test]
+fn sliders_that_cannot_turn_have_a_status_and_no_nan_anywhere() {
+    let folder = TempDir::new().expect("a folder");
+    let slider = |a: &str, line: &str| {
+        format!(
+            "format = 1\n[slider_crank]\nA = [0, 0]\na = {a}\nb = 3\nline_point = {line}\nline_deg = 0\n\
+             coupler_x = 1\ncoupler_y = 1\nt1 = -1\n"
+        )
+    };
+    let inverted = |b: &str, offset: &str| {
+        format!(
+            "format = 1\n[inverted_slider_crank]\nA = [0, 0]\nB = {b}\na = 2\noffset = {offset}\n\
+             coupler_x = 0\ncoupler_y = 0\nt1 = -1\n"
+        )
+    };
+    let cases = [
+        (slider("5", "[0, 0]"), vec!["ok", "open at D"]),
+        (slider("3", "[0, 0]"), vec!["ok", "singular at D"]),
+        (slider("1", "[0, 9]"), vec!["open at D"]),
+        (inverted("[2, 0]", "0"), vec!["ok", "undetermined at D"]),
+        (inverted("[2, 0]", "-1"), vec!["ok", "open at D"]),
+        (inverted("[0, 0]", "1"), vec!["ok"]),
+        (inverted("[0, 0]", "2"), vec!["singular at D"]),
+        (inverted("[1, 0]", "9"), vec!["open at D"]),
+    ];
+    for (text, statuses) in cases {
+        fs::write(folder.path().join("it.toml"), &text).expect("written");
+        let files = ["--csv", "it.csv", "--svg", "it.svg", "--force"];
+        let arguments = ["analyze", "it.toml", "--cycle", "360", "--omega", "3", "--alpha", "1"];
+        let run = linkwright(folder.path(), &[&arguments[..], &files[..]].concat());
+        assert_eq!(run.code, 0, "{text}: {}", run.stderr);
+        let table = linkwright(folder.path(), &["analyze", "it.toml", "--omega", "3"]);
+        let json = linkwright(folder.path(), &[&arguments[..], &["--json"]].concat());
+        serde_json::from_str::<serde_json::Value>(&json.stdout).expect("JSON");
+        let csv = fs::read_to_string(folder.path().join("it.csv")).expect("written");
+        let svg = fs::read_to_string(folder.path().join("it.svg")).expect("written");
+        for output in [&run.stdout, &table.stdout, &json.stdout, &csv, &svg] {
+            assert!(!output.contains("NaN") && !output.contains("inf"), "{text}: {output}");
+        }
+        for status in statuses {
+            assert!(csv.lines().any(|line| line.ends_with(&format!(",{status}"))), "{text}: {status}\n{csv}");
+        }
+    }
+}

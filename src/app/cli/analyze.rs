@@ -8,15 +8,15 @@ use crate::files::linkage_file;
 use crate::files::linkage_file::AnyLinkageFile;
 use crate::files::name;
 use crate::mechanism::Linkage;
-use crate::mechanism::analysis::chain::{ChainRequest, analyze_chain};
+use crate::mechanism::analysis::driven::{MechanismRequest, analyze_mechanism};
 use crate::mechanism::analysis::{Request, analyze, full_turn};
 use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::report::analysis_csv::analysis_csv;
 use crate::report::analysis_sheets::analysis_svg;
 use crate::report::analysis_text::{analysis_head, analysis_table};
-use crate::report::chain_sheet::chain_svg;
-use crate::report::chain_text::{chain_csv, chain_head, chain_table};
 use crate::report::cognates_sheet::cognates_svg;
+use crate::report::mechanism_sheet::mechanism_svg;
+use crate::report::mechanism_text::{mechanism_csv, mechanism_head, mechanism_table};
 use crate::report::text::clean;
 use std::path::Path;
 
@@ -47,18 +47,19 @@ pub fn run(options: &Analyze) -> Result<Ended, Ended> {
             };
             deliver(options, &analysis, &forms)
         }
-        Linkage::Chain(_) if all_configurations || !options.method.is_empty() => Err(refuse(
-            "--all-configurations and --method are for four-bars; this file is a chain, whose signs stand in it",
-        )),
-        Linkage::Chain(chain) => {
-            let request = ChainRequest { name, unit, chain: *chain, crank_deg, input };
-            let analysis = analyze_chain(&request);
+        other if all_configurations || !options.method.is_empty() => Err(refuse(format!(
+            "--all-configurations and --method are for four-bars; this file is {}, whose signs stand in it",
+            linkage_file::kind_in_words(&other)
+        ))),
+        linkage => {
+            let request = MechanismRequest { name, unit, linkage, crank_deg, input };
+            let analysis = analyze_mechanism(&request);
             let forms = Forms {
                 positions: analysis.rows.len(),
-                csv: &|| chain_csv(&analysis),
-                svg: &|| chain_svg(&analysis, &request.chain),
-                table: &|| chain_table(&analysis, terminal::colour()),
-                head: &|| chain_head(&analysis, terminal::colour()),
+                csv: &|| mechanism_csv(&analysis),
+                svg: &|| mechanism_svg(&analysis, &request.linkage),
+                table: &|| mechanism_table(&analysis, terminal::colour()),
+                head: &|| mechanism_head(&analysis, terminal::colour()),
             };
             deliver(options, &analysis, &forms)
         }
@@ -98,9 +99,15 @@ fn deliver(options: &Analyze, analysis: &impl serde::Serialize, forms: &Forms<'_
 /// Runs `cognates`.
 pub fn cognates(options: &Cognates) -> Result<Ended, Ended> {
     let AnyLinkageFile { name, unit, linkage } = result::read_linkage(&options.linkage)?;
-    let Linkage::FourBar(linkage) = linkage else {
-        let why = "it is a chain, and cognates are of four-bars: give a file with [linkage] or [vector_loop]";
-        return Err(refuse_path(&options.linkage, why));
+    let linkage = match linkage {
+        Linkage::FourBar(linkage) => linkage,
+        other => {
+            let kind = linkage_file::kind_in_words(&other);
+            let why = format!(
+                "it is {kind}, and cognates are of four-bars: give a file with [linkage] or [vector_loop]"
+            );
+            return Err(refuse_path(&options.linkage, why));
+        }
     };
     let mut found = Vec::new();
     let mut text = String::new();

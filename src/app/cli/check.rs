@@ -52,6 +52,8 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
                 let kind = linkage.linkage_type().map_or("links that cannot be joined", |t| t.name());
                 format!("linkage {name}: {kind}, {linkage}")
             }
+            Linkage::SliderCrank(linkage) => format!("slider-crank {name}: {linkage}"),
+            Linkage::InvertedSliderCrank(linkage) => format!("inverted slider-crank {name}: {linkage}"),
             Linkage::Chain(chain) => {
                 format!("chain {name}: {} stages, points {}", chain.stages(), chain.names().join(", "))
             }
@@ -106,6 +108,7 @@ fn is_linkage_file(path: &Path) -> bool {
     let text = if path.is_file() { input_text::read(path).unwrap_or_default() } else { String::new() };
     text.lines().any(|line| {
         let line = line.trim_start();
-        ["[linkage]", "[vector_loop]", "[chain"].iter().any(|table| line.starts_with(table))
+        let tables = ["[linkage]", "[vector_loop]", "[slider_crank]", "[inverted_slider_crank]", "[chain"];
+        tables.iter().any(|table| line.starts_with(table))
     })
 }

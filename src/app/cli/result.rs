@@ -49,8 +49,8 @@ pub fn read_run_of(argument: &Path, command: &str) -> Result<Run, Ended> {
     }
 }
 
-/// As [`read`], for a command that is about one linkage alone, a chain or a four-bar: of a result it is the candidate
-/// that is named, else the first.
+/// As [`read`], for a command that is about one linkage alone, of any kind: of a result it is the candidate that is named,
+/// else the first.
 ///
 /// # Errors
 /// [`Ended::Refused`]; the fault has been reported. [`Ended::Bad`] for a result without any candidate.

@@ -1,6 +1,9 @@
-//! Linkage files: a four-bar in natural coordinates or as a vector loop, or a chain of stages.
+//! Linkage files: a four-bar in natural coordinates or as a vector loop, a linkage with a slider, or a chain of stages.
 
 mod chain;
+mod sliders;
+
+pub use sliders::{inverted_slider_crank_to_toml, slider_crank_to_toml};
 
 use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::input_text;
@@ -46,11 +49,15 @@ pub(crate) struct RawLinkageFile {
     name: Option<String>,
     /// The unit of lengths.
     unit: Option<Unit>,
-    /// Natural coordinates; this or vector_loop or chain.
+    /// A four-bar in natural coordinates.
     linkage: Option<OnlyTable<RawLinkage>>,
-    /// A vector loop; this or linkage or chain.
+    /// A four-bar as a vector loop.
     vector_loop: Option<OnlyTable<RawVectorLoop>>,
-    /// A compound mechanism, stage by stage; this or linkage or vector_loop.
+    /// A slider-crank.
+    slider_crank: Option<OnlyTable<sliders::RawSliderCrank>>,
+    /// An inverted slider-crank.
+    inverted_slider_crank: Option<OnlyTable<sliders::RawInvertedSliderCrank>>,
+    /// A compound mechanism, stage by stage.
     chain: Option<OnlyTable<chain::RawChain>>,
 }
 
@@ -114,19 +121,29 @@ struct RawVectorLoop {
 }
 
 /// Help for a file without a linkage.
-const KINDS: &str =
-    "a linkage file has a table [linkage] with A, B, a, b, c, d, e, t1, t2, or [vector_loop], or [chain]";
+const KINDS: &str = "a linkage file has a table [linkage] with A, B, a, b, c, d, e, t1, t2, or [vector_loop], \
+                     [slider_crank], [inverted_slider_crank] or [chain]";
+
+/// Returns the kind of a linkage with its article: `a slider-crank`.
+pub fn kind_in_words(linkage: &Linkage) -> &'static str {
+    match linkage {
+        Linkage::FourBar(_) => "a four-bar",
+        Linkage::SliderCrank(_) => "a slider-crank",
+        Linkage::InvertedSliderCrank(_) => "an inverted slider-crank",
+        Linkage::Chain(_) => "a chain",
+    }
+}
 
 /// Reads the four-bar of a file.
 ///
 /// # Errors
-/// A [`Diagnostic`] that points at the fault; a chain is no four-bar, see [`load_any`].
+/// A [`Diagnostic`] that points at the fault; linkages of other kinds are refused, see [`load_any`].
 pub fn load(path: &Path) -> Result<LinkageFile, Box<Diagnostic>> {
     let text = input_text::read(path)?;
     parse(&path.display().to_string(), &text)
 }
 
-/// Reads the linkage of a file: a four-bar or a chain.
+/// Reads the linkage of a file, of any kind.
 ///
 /// # Errors
 /// A [`Diagnostic`] that points at the fault.
@@ -143,16 +160,22 @@ pub fn parse(file_name: &str, text: &str) -> Result<LinkageFile, Box<Diagnostic>
     let AnyLinkageFile { name, unit, linkage } = parse_any(file_name, text)?;
     match linkage {
         Linkage::FourBar(linkage) => Ok(LinkageFile { name, unit, linkage }),
-        Linkage::Chain(_) => {
+        other => {
             let toml = TomlText { file: file_name, text: input_text::without_mark(text) };
-            let message = "a chain is not a four-bar, and a four-bar is needed here";
+            let message =
+                format!("{} is not a four-bar, and a four-bar is needed here", kind_in_words(&other));
             let help = "give a linkage file with [linkage] or [vector_loop]";
-            toml.refuse_key("chain", message, help)
+            let table = match other {
+                Linkage::SliderCrank(_) => "slider_crank",
+                Linkage::InvertedSliderCrank(_) => "inverted_slider_crank",
+                Linkage::Chain(_) | Linkage::FourBar(_) => "chain",
+            };
+            toml.refuse_key(table, message, help)
         }
     }
 }
 
-/// Reads the linkage of a text, a four-bar or a chain.
+/// Reads the linkage of a text, of any kind.
 ///
 /// # Errors
 /// As [`load_any`].
@@ -167,6 +190,8 @@ pub fn parse_any(file_name: &str, text: &str) -> Result<AnyLinkageFile, Box<Diag
     let given = [
         ("linkage", raw.linkage.is_some()),
         ("vector_loop", raw.vector_loop.is_some()),
+        ("slider_crank", raw.slider_crank.is_some()),
+        ("inverted_slider_crank", raw.inverted_slider_crank.is_some()),
         ("chain", raw.chain.is_some()),
     ];
     let given: Vec<&str> = given.into_iter().filter(|(_, there)| *there).map(|(table, _)| table).collect();
@@ -178,6 +203,13 @@ pub fn parse_any(file_name: &str, text: &str) -> Result<AnyLinkageFile, Box<Diag
         Linkage::FourBar(natural_linkage(natural).map_err(|e| explain(&toml, &e, "linkage"))?)
     } else if let Some(OnlyTable(vector_loop)) = raw.vector_loop {
         Linkage::FourBar(from_vector_loop(&vector_loop).map_err(|e| explain(&toml, &e, "vector_loop"))?)
+    } else if let Some(OnlyTable(raw)) = raw.slider_crank {
+        let read = sliders::slider_crank(raw).map_err(|e| explain(&toml, &e, "slider_crank"))?;
+        Linkage::SliderCrank(read)
+    } else if let Some(OnlyTable(raw)) = raw.inverted_slider_crank {
+        let read =
+            sliders::inverted_slider_crank(raw).map_err(|e| explain(&toml, &e, "inverted_slider_crank"))?;
+        Linkage::InvertedSliderCrank(read)
     } else if let Some(OnlyTable(chain)) = raw.chain {
         Linkage::Chain(Box::new(chain::chain(&toml, chain)?))
     } else {
@@ -215,12 +247,15 @@ fn from_vector_loop(raw: &RawVectorLoop) -> Result<FourBar, LinkageError> {
 
 /// Returns the diagnostic of a linkage's error, at the key of the file's table that it is about.
 fn explain(toml: &TomlText<'_>, error: &LinkageError, table: &str) -> Box<Diagnostic> {
-    let name = |key: &'static str| if table == "linkage" { key } else { vector_loop_key(key) };
+    let name = |key: &'static str| if table == "vector_loop" { vector_loop_key(key) } else { key };
     let path = |key: &'static str| format!("{table}.{}", name(key));
     Box::new(match error {
         LinkageError::NotFinite { key, value } => toml
             .at(&path(key), format!("{} = {value} is not a finite number below {MAX_MAGNITUDE:e}", name(key)))
-            .with_help("use a larger unit, such as m for mm"),
+            .with_help(match *key {
+                "line_deg" => "write a direction in degrees, such as 30",
+                _ => "use a larger unit, such as m for mm",
+            }),
         LinkageError::LengthNotPositive { key, value } => toml
             .at(&path(key), format!("{} = {value}: a link's length must be positive", name(key)))
             .with_help("write a length above 0"),
@@ -295,22 +330,12 @@ pub(crate) fn checked_name(toml: &TomlText<'_>, given: Option<String>, fallback:
 /// Returns the text of a linkage file; every number reads back to the same digits.
 pub fn to_toml(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
     let p = linkage.natural_coordinates();
-    let name = toml::Value::String(name.to_owned());
-    let unit = unit.map_or(String::new(), |u| format!("unit = \"{}\"\n", u.label()));
     let ([ax, ay], [bx, by]) = (p.crank_pivot, p.follower_pivot);
-    format!(
-        "# A four-bar linkage, {}.\n\
-         # A, B: fixed pivots of crank and follower. C, D: moving pins. P: coupler point.\n\
-         # a = |AC| crank, b = |CD| coupler, c = |BD| follower, d = |CP|, e = |DP|.\n\
-         # t1 = 1: D lies left of the line from C to B; t2 = 1: P lies left of the line from C to D.\n\
-         format = {FORMAT}\n\
-         name = {name}\n\
-         {unit}\n\
-         [linkage]\n\
+    let table = format!(
+        "[linkage]\n\
          A = [{ax:?}, {ay:?}]\n\
          B = [{bx:?}, {by:?}]\n\
          a = {:?}\nb = {:?}\nc = {:?}\nd = {:?}\ne = {:?}\nt1 = {}\nt2 = {}\n",
-        crate::files::generator::mark(),
         p.crank,
         p.coupler,
         p.follower,
@@ -318,7 +343,19 @@ pub fn to_toml(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
         p.follower_side,
         i64::from(p.assembly),
         i64::from(p.side),
-    )
+    );
+    let letters = "# A, B: fixed pivots of crank and follower. C, D: moving pins. P: coupler point.\n\
+                   # a = |AC| crank, b = |CD| coupler, c = |BD| follower, d = |CP|, e = |DP|.\n\
+                   # t1 = 1: D lies left of the line from C to B; t2 = 1: P lies left of the line from C to D.\n";
+    text_of("A four-bar linkage", letters, name, unit, &table)
+}
+
+/// Returns the text of a linkage file: its kind, the comment on its letters, the keys at the top and its table.
+fn text_of(kind: &str, letters: &str, name: &str, unit: Option<Unit>, table: &str) -> String {
+    let name = toml::Value::String(name.to_owned());
+    let unit = unit.map_or(String::new(), |u| format!("unit = \"{}\"\n", u.label()));
+    let mark = crate::files::generator::mark();
+    format!("# {kind}, {mark}.\n{letters}format = {FORMAT}\nname = {name}\n{unit}\n{table}")
 }
 
 /// An addition to a linkage that moves with its links: a body on the coupler, or the scales of a function.

@@ -12,7 +12,8 @@ const ORDER: [&str; 6] = ["task", "design", "require", "solve", "certify", "expe
 const LINKAGE_EXAMPLES: &str = r#"
 `linkwright check FILE` reads such a file and says what is wrong with it; `analyze`, `cognates`, `build`, `snap`,
 `export` and `compare --target PROBLEM` take it as their LINKAGE or RESULT, and every result holds its candidates as
-such files (`linkage-1.toml`, ..). A file holds exactly one of `[linkage]`, `[vector_loop]` and `[chain]`.
+such files (`linkage-1.toml`, ..). A file holds exactly one of `[linkage]`, `[vector_loop]`, `[slider_crank]`,
+`[inverted_slider_crank]` and `[chain]`; the last three are for `check` and `analyze`.
 
 A four-bar: crank A-C, coupler C-D with the coupler point P, follower B-D.
 
@@ -47,6 +48,42 @@ L3 = 300.0
 L4 = 500.0
 Z1 = 200.0
 beta_deg = 30.0
+t1 = 1
+```
+
+A slider-crank: crank A-C, coupler C-D with the coupler point P, 5 along it and 1 to its left, and D slides along the line
+through (0, 1) in the direction of the x axis. The slider's place counts from that point.
+
+```toml
+format = 1
+name = "slider-crank"
+
+[slider_crank]
+A = [0.0, 0.0]
+a = 2.0
+b = 5.0
+line_point = [0.0, 1.0]
+line_deg = 0.0
+coupler_x = 5.0
+coupler_y = 1.0
+t1 = 1
+```
+
+An inverted slider-crank: the coupler is a rod from C that slides through a block at the fixed pivot B, which lies 0.5 to the
+left of the rod's line; P is 5 along the rod and 1 to its left. In analyses D is the foot of the perpendicular from B on the
+rod, and the slider's place its distance from C.
+
+```toml
+format = 1
+name = "inverted-slider-crank"
+
+[inverted_slider_crank]
+A = [0.0, 0.0]
+B = [4.0, 1.0]
+a = 2.0
+offset = 0.5
+coupler_x = 5.0
+coupler_y = 1.0
 t1 = 1
 ```
 

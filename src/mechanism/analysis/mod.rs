@@ -4,7 +4,9 @@
 //! The results are plain data; reports are made from them elsewhere. A missing value is `None`, with a status that
 //! gives the reason, never a NaN.
 
-pub mod chain;
+pub mod driven;
+
+pub use crate::mechanism::any::Status;
 
 use crate::mechanism::Unit;
 use crate::mechanism::four_bar::loop_closure::{
@@ -80,35 +82,6 @@ pub struct Request {
     pub methods: Vec<PositionMethod>,
     /// Whether all four (t1, t2) are analysed instead of the linkage's own.
     pub all_configurations: bool,
-}
-
-/// Status of the result at one crank angle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Status {
-    /// Position and motion are definite.
-    Ok,
-    /// A toggle: the position is known, velocities and accelerations are not decided by the crank.
-    Singular,
-    /// The loop does not close at this crank angle.
-    Open,
-    /// C lies on B with b = c: every direction of the follower closes the loop.
-    Undetermined,
-    /// The input or a result is beyond the range of numbers.
-    NotFinite,
-}
-
-impl Status {
-    /// Returns the status as a word: ok, singular, open, undetermined or not-finite.
-    pub fn word(self) -> &'static str {
-        match self {
-            Status::Ok => "ok",
-            Status::Singular => "singular",
-            Status::Open => "open",
-            Status::Undetermined => "undetermined",
-            Status::NotFinite => "not-finite",
-        }
-    }
 }
 
 /// Position of the linkage: joints and link angles.

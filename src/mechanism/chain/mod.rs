@@ -19,12 +19,13 @@
 //! any point rigidly attached to a link. A mechanism that cannot be built in this order (an Assur group of a higher
 //! class, such as Stephenson's six-bar driven at its floating dyad) is no chain.
 //!
-//! Velocities and accelerations are in [`motion`], whole cycles in [`cycle`].
+//! Velocities and accelerations are in [`motion`], whole cycles in [`cycle`]; [`kind`] is the chain as a mechanism of any kind.
 
 mod assembly;
 mod builder;
 pub mod cycle;
 mod error;
+pub mod kind;
 pub mod motion;
 
 pub use builder::{ChainBuilder, MAX_POINT_NAME, MAX_STAGES};
@@ -404,7 +405,7 @@ impl Line {
 }
 
 /// Returns the |V|^2 at and below which two points of a mechanism of this scale coincide.
-pub(super) fn coincident_sq(scale: f64) -> f64 {
+pub(in crate::mechanism) fn coincident_sq(scale: f64) -> f64 {
     let nearest = COINCIDENT_ROUNDINGS * f64::EPSILON * scale;
     nearest * nearest
 }

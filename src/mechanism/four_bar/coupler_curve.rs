@@ -2,7 +2,7 @@
 //!
 //! A circuit is parametrised by tau in [0, 2 pi) as [`OnCircuit`] defines it.
 
-use crate::mechanism::{AssemblyMode, Complex, FourBar, OnCircuit, dot, length};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, InputArc, OnCircuit, dot, length};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::LANES;
 use std::f64::consts::TAU;
@@ -10,10 +10,45 @@ use std::f64::consts::TAU;
 /// Default number of samples of a full circuit: 0.5 degrees apart.
 pub const DEFAULT_SAMPLES: usize = 720;
 
+/// A linkage of one loop that a crank drives, as far as its coupler curve asks.
+pub trait SingleLoop: Copy {
+    /// Returns the same linkage with the given sign of the closure's root.
+    #[must_use]
+    fn with_assembly(self, assembly: AssemblyMode) -> Self;
+
+    /// Returns t1, the sign of the closure's root.
+    fn assembly(&self) -> AssemblyMode;
+
+    /// Computes P at a crank angle (radians) in the given assembly; `None` if the loop is open.
+    fn coupler_point_with(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<Complex>;
+
+    /// Returns the arc on which the crank rocks in the circuit of a position; `None` if it turns fully or cannot move.
+    fn arc_of(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<InputArc>;
+}
+
+impl SingleLoop for FourBar {
+    fn with_assembly(self, assembly: AssemblyMode) -> Self {
+        FourBar::with_assembly(self, assembly)
+    }
+
+    fn assembly(&self) -> AssemblyMode {
+        FourBar::assembly(self)
+    }
+
+    fn coupler_point_with(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<Complex> {
+        self.position_with(crank_angle, assembly).joints().map(|joints| joints.coupler_point)
+    }
+
+    fn arc_of(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<InputArc> {
+        let mobility = self.mobility();
+        mobility.arc(mobility.branch(crank_angle, assembly).circuit)
+    }
+}
+
 /// The coupler curve of one circuit.
 #[derive(Clone, Debug)]
-pub struct CouplerCurve {
-    on: OnCircuit,
+pub struct CouplerCurve<L = FourBar> {
+    on: OnCircuit<L>,
     /// P at tau = 2 pi i / n; `None` if the loop is open (only within rounding of a toggle).
     samples: Vec<Option<Complex>>,
     /// The samples as columns of x and y, infinitely far away if the loop is open: a loop over them becomes vector
@@ -34,12 +69,12 @@ pub struct Nearest {
     pub distance: f64,
 }
 
-impl CouplerCurve {
+impl<L: SingleLoop> CouplerCurve<L> {
     /// Samples the curve of the circuit that holds the given position, with `samples` samples (at least 8).
-    pub fn through(linkage: &FourBar, crank_angle: f64, assembly: AssemblyMode, samples: usize) -> Self {
+    pub fn through(linkage: &L, crank_angle: f64, assembly: AssemblyMode, samples: usize) -> Self {
         let on = OnCircuit::through(linkage, crank_angle, assembly);
         let n = samples.max(8);
-        let samples = (0..n).map(|i| Some(on.joints_at(TAU * i as f64 / n as f64)?.coupler_point)).collect();
+        let samples = (0..n).map(|i| on.point_at(TAU * i as f64 / n as f64)).collect();
         let mut curve = CouplerCurve { on, samples, columns: [Vec::new(), Vec::new()], longest_chord: 0.0 };
         let column =
             |of: fn(Complex) -> f64| curve.samples.iter().map(|p| p.map_or(f64::INFINITY, of)).collect();
@@ -55,7 +90,7 @@ impl CouplerCurve {
 
     /// Computes P at a parameter of the circuit; `None` if the loop is open.
     pub fn point_at(&self, parameter: f64) -> Option<Complex> {
-        self.on.joints_at(parameter).map(|j| j.coupler_point)
+        self.on.point_at(parameter)
     }
 
     /// Iterates over the sampled points in the order of the parameter.

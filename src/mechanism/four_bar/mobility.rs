@@ -13,7 +13,8 @@
 //! | rocks, non-Grashof (triple-rocker) | 1 | 2 | branch: t1 |
 //! | change point | by its input range; the circuits meet in the flat position | | |
 
-use crate::mechanism::{AssemblyMode, FourBar, Joints};
+use super::coupler_curve::SingleLoop;
+use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -134,6 +135,51 @@ impl InputRange {
             InputRange::Full | InputRange::None => &[],
         }
     }
+
+    /// Returns the number of circuits; `change_point`: the two assemblies of a full turn meet in the flat position.
+    pub fn circuits(&self, change_point: bool) -> u8 {
+        match self {
+            InputRange::None => 0,
+            InputRange::One(_) => 1,
+            InputRange::Full if change_point => 1,
+            InputRange::Full | InputRange::Two(_) => 2,
+        }
+    }
+
+    /// Returns the number of branches of each circuit.
+    pub fn branches_per_circuit(&self, change_point: bool) -> u8 {
+        match self {
+            InputRange::None => 0,
+            InputRange::Full if !change_point => 1,
+            _ => 2,
+        }
+    }
+
+    /// Returns the arc on which a circuit's input moves; `None` if it turns fully or cannot move.
+    pub fn arc(&self, circuit: Circuit) -> Option<InputArc> {
+        let arcs = self.arcs();
+        arcs.get(usize::from(circuit.index)).or(arcs.last()).copied()
+    }
+
+    /// Returns the branch of a position that closes the loop.
+    pub fn branch(&self, change_point: bool, crank_angle: f64, assembly: AssemblyMode) -> Branch {
+        let index = match self {
+            InputRange::Full if !change_point => u8::from(assembly == AssemblyMode::Minus),
+            InputRange::Two(arcs) => {
+                u8::from(arcs[1].offset(crank_angle).abs() < arcs[0].offset(crank_angle).abs())
+            }
+            _ => 0,
+        };
+        Branch { circuit: Circuit { index }, assembly }
+    }
+
+    /// Returns the toggles, at each of which two branches of a circuit meet; none for the full turn.
+    pub fn toggles(&self) -> Vec<Toggle> {
+        let of = |(arc, index): (&InputArc, u8)| {
+            arc.ends().map(|angle| Toggle { crank_angle: wrapped(angle), circuit: Circuit { index } })
+        };
+        self.arcs().iter().zip(0..).flat_map(of).collect()
+    }
 }
 
 /// A circuit: the positions that are reached without taking the linkage apart.
@@ -165,19 +211,17 @@ pub struct Toggle {
 /// fully, psi of the [`InputArc`] if it rocks (there t1 = sign cos tau, so that both branches and their toggles are
 /// passed smoothly).
 #[derive(Clone, Debug, PartialEq)]
-pub struct OnCircuit {
+pub struct OnCircuit<L = FourBar> {
     /// The linkage, with the assembly mode of the position that chose the circuit.
-    pub linkage: FourBar,
+    pub linkage: L,
     /// The arc of a rocking input.
     pub arc: Option<InputArc>,
 }
 
-impl OnCircuit {
+impl<L: SingleLoop> OnCircuit<L> {
     /// Returns the circuit that holds the given position.
-    pub fn through(linkage: &FourBar, crank_angle: f64, assembly: AssemblyMode) -> Self {
-        let mobility = linkage.mobility();
-        let arc = mobility.arc(mobility.branch(crank_angle, assembly).circuit);
-        OnCircuit { linkage: linkage.with_assembly(assembly), arc }
+    pub fn through(linkage: &L, crank_angle: f64, assembly: AssemblyMode) -> Self {
+        OnCircuit { linkage: linkage.with_assembly(assembly), arc: linkage.arc_of(crank_angle, assembly) }
     }
 
     /// Returns the crank angle and the assembly mode at a parameter.
@@ -188,6 +232,14 @@ impl OnCircuit {
         }
     }
 
+    /// Computes P at a parameter; `None` if the loop is open.
+    pub fn point_at(&self, parameter: f64) -> Option<Complex> {
+        let (crank_angle, assembly) = self.position_at(parameter);
+        self.linkage.coupler_point_with(crank_angle, assembly)
+    }
+}
+
+impl OnCircuit {
     /// Computes the joints at a parameter; `None` if the loop is open.
     pub fn joints_at(&self, parameter: f64) -> Option<Joints> {
         let (crank_angle, assembly) = self.position_at(parameter);
@@ -318,47 +370,30 @@ impl Mobility {
 
     /// Returns the number of circuits of the linkage.
     pub fn circuits(&self) -> u8 {
-        match self.input {
-            InputRange::None => 0,
-            InputRange::One(_) => 1,
-            // At a change point the two assemblies of a full turn meet in the flat position.
-            InputRange::Full if self.linkage_type == Some(LinkageType::ChangePoint) => 1,
-            InputRange::Full | InputRange::Two(_) => 2,
-        }
+        self.input.circuits(self.is_change_point())
     }
 
     /// Returns the number of branches of each circuit.
     pub fn branches_per_circuit(&self) -> u8 {
-        match self.input {
-            InputRange::None => 0,
-            InputRange::Full if self.linkage_type != Some(LinkageType::ChangePoint) => 1,
-            _ => 2,
-        }
+        self.input.branches_per_circuit(self.is_change_point())
     }
 
     /// Returns the arc on which a circuit's input moves; `None` if it turns fully or cannot move.
     pub fn arc(&self, circuit: Circuit) -> Option<InputArc> {
-        let arcs = self.input.arcs();
-        arcs.get(usize::from(circuit.index)).or(arcs.last()).copied()
+        self.input.arc(circuit)
     }
 
     /// Returns the branch of a position that closes the loop.
     pub fn branch(&self, crank_angle: f64, assembly: AssemblyMode) -> Branch {
-        let index = match self.input {
-            InputRange::Full if self.circuits() == 2 => u8::from(assembly == AssemblyMode::Minus),
-            InputRange::Two(arcs) => {
-                u8::from(arcs[1].offset(crank_angle).abs() < arcs[0].offset(crank_angle).abs())
-            }
-            _ => 0,
-        };
-        Branch { circuit: Circuit { index }, assembly }
+        self.input.branch(self.is_change_point(), crank_angle, assembly)
     }
 
     /// Returns the toggles, at each of which two branches of a circuit meet; none if the input turns fully.
     pub fn toggles(&self) -> Vec<Toggle> {
-        let of = |(arc, index): (&InputArc, u8)| {
-            arc.ends().map(|angle| Toggle { crank_angle: wrapped(angle), circuit: Circuit { index } })
-        };
-        self.input.arcs().iter().zip(0..).flat_map(of).collect()
+        self.input.toggles()
+    }
+
+    fn is_change_point(&self) -> bool {
+        self.linkage_type == Some(LinkageType::ChangePoint)
     }
 }

@@ -20,6 +20,7 @@
 //! | [`cognate`] | the Roberts-Chebyshev cognates: the two other four-bars that trace the same coupler curve |
 //! | [`coupler_curve`] | the coupler curve of a circuit: samples, length, and the distance from a point |
 //! | [`gradient`] | gradient of the coupler point by the linkage's parameters and by the crank angle |
+//! | `kind` | the four-bar as a mechanism of any kind |
 //! | [`loop_closure`] | loop-closure methods of position analysis from the literature, as reference solvers beside the natural coordinates of `position.rs` |
 //! | [`mobility`] | mobility of a four-bar: its type by Grashof, the range of its input, and its circuits, branches and toggles |
 //! | [`motion`] | velocity and acceleration at one crank angle, in natural coordinates |
@@ -31,6 +32,7 @@ pub mod assembly_condition;
 pub mod cognate;
 pub mod coupler_curve;
 pub mod gradient;
+mod kind;
 pub mod loop_closure;
 pub mod mobility;
 pub mod motion;

@@ -1,6 +1,6 @@
 //! Positions at many crank angles, in blocks of lanes: the same digits as [`FourBar::position`], one at a time.
 
-use super::position::Kernel;
+use super::position::{Kernel, LanePosition};
 use crate::mechanism::FourBar;
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
@@ -38,33 +38,57 @@ impl FourBar {
     /// # Panics
     /// If there are fewer places than crank angles.
     pub fn positions(&self, crank_angles: &[f64], joints: JointColumns<'_>) {
-        let n = crank_angles.len();
-        let JointColumns { crank_pin, follower_pin, coupler_point } = joints;
-        let columns = [&mut crank_pin[..n], &mut follower_pin[..n], &mut coupler_point[..n]];
-        let kernel = Kernel::new(self);
-        vectorised(
-            #[inline(always)]
-            || {
-                let [c, d, p] = columns.map(|column| column.as_chunks_mut::<LANES>());
-                let (blocks, rest) = crank_angles.as_chunks::<LANES>();
-                for (angles, ((c, d), p)) in blocks.iter().zip(c.0.iter_mut().zip(d.0).zip(p.0)) {
-                    block(&kernel, angles, [c, d, p]);
-                }
-                let (mut angles, mut last) = ([0.0; LANES], [[[0.0; 2]; LANES]; 3]);
-                angles[..rest.len()].copy_from_slice(rest);
-                let [ends_c, ends_d, ends_p] = &mut last;
-                block(&kernel, &angles, [ends_c, ends_d, ends_p]);
-                for (place, ends) in [c.1, d.1, p.1].into_iter().zip(&last) {
-                    place.copy_from_slice(&ends[..place.len()]);
-                }
-            },
-        );
+        positions_of(&Kernel::new(self), crank_angles, joints);
     }
+}
+
+/// The position equations of a linkage with its coefficients, for one number or for eight side by side.
+pub trait LaneKernel {
+    /// Computes the position at a crank angle given by its cosine and sine.
+    fn at<L: Lane>(&self, cos: L, sin: L) -> LanePosition<L>;
+}
+
+impl LaneKernel for Kernel {
+    #[inline(always)]
+    fn at<L: Lane>(&self, cos: L, sin: L) -> LanePosition<L> {
+        Kernel::at(self, cos, sin)
+    }
+}
+
+/// Computes the positions of a kernel at many crank angles, NaN where the loop is open: see [`FourBar::positions`].
+///
+/// # Panics
+/// If there are fewer places than crank angles.
+pub(in crate::mechanism) fn positions_of(
+    kernel: &impl LaneKernel,
+    crank_angles: &[f64],
+    joints: JointColumns<'_>,
+) {
+    let n = crank_angles.len();
+    let JointColumns { crank_pin, follower_pin, coupler_point } = joints;
+    let columns = [&mut crank_pin[..n], &mut follower_pin[..n], &mut coupler_point[..n]];
+    vectorised(
+        #[inline(always)]
+        || {
+            let [c, d, p] = columns.map(|column| column.as_chunks_mut::<LANES>());
+            let (blocks, rest) = crank_angles.as_chunks::<LANES>();
+            for (angles, ((c, d), p)) in blocks.iter().zip(c.0.iter_mut().zip(d.0).zip(p.0)) {
+                block(kernel, angles, [c, d, p]);
+            }
+            let (mut angles, mut last) = ([0.0; LANES], [[[0.0; 2]; LANES]; 3]);
+            angles[..rest.len()].copy_from_slice(rest);
+            let [ends_c, ends_d, ends_p] = &mut last;
+            block(kernel, &angles, [ends_c, ends_d, ends_p]);
+            for (place, ends) in [c.1, d.1, p.1].into_iter().zip(&last) {
+                place.copy_from_slice(&ends[..place.len()]);
+            }
+        },
+    );
 }
 
 /// Computes C, D and P at a block of crank angles, NaN where the loop is open.
 #[inline(always)]
-fn block(kernel: &Kernel, angles: &[f64; LANES], places: [&mut [[f64; 2]; LANES]; 3]) {
+fn block(kernel: &impl LaneKernel, angles: &[f64; LANES], places: [&mut [[f64; 2]; LANES]; 3]) {
     let (sin, cos) = sin_cos_block(angles);
     let at = kernel.at(F64x8(cos), F64x8(sin));
     let [px, py] = at.coupler_point;
