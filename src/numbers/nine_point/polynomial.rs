@@ -121,7 +121,7 @@ mod tests {
     use super::*;
     use crate::discs::{Disc, Upper};
     use crate::refinement::{residual_error, residuals};
-    use crate::target::STEPS;
+    use crate::target::{Kind, STEPS};
     use linkwright_arithmetic::streams::{Stream, stream, uniform};
     use num_bigint::BigInt;
 
@@ -193,17 +193,27 @@ mod tests {
             let displacements = ExactDisplacements {
                 delta: std::array::from_fn(|_| number(&mut stream)),
                 starred: std::array::from_fn(|_| number(&mut stream)),
+                // Nine points, and every fourth a mixture with poses and a given pivot.
+                kind: if index % 4 == 3 { Kind { poses: 2, pivots: 1 } } else { Kind::default() },
             };
             let found = residuals(&displacements, &midpoint);
             for (row, of) in found.iter().enumerate() {
                 let (link, j) = (row / STEPS, row % STEPS);
-                let [p, g, ps, gs, t] = columns(link, j).map(|i| Exact::of(midpoint[i]));
                 let (delta, starred) =
                     (Exact::of(displacements.delta[j]), Exact::of(displacements.starred[j]));
-                // The equation times T, in the form of the module: f = L M - T U V.
-                let l = p.times(&t).plus(&delta, 1).plus(&g, -1);
-                let m = starred.plus(&gs, -1).times(&t).plus(&ps, 1);
-                let exact = l.times(&m).plus(&t.times(&p.plus(&g, -1).times(&ps.plus(&gs, -1))), -1);
+                let at = |i: usize| Exact::of(midpoint[i]);
+                let exact = match equation(&displacements, link, j) {
+                    // The equation times T, in the form of the module: f = L M - T U V.
+                    Equation::Length(places) => {
+                        let [p, g, ps, gs, t] = places.map(at);
+                        let l = p.times(&t).plus(&delta, 1).plus(&g, -1);
+                        let m = starred.plus(&gs, -1).times(&t).plus(&ps, 1);
+                        l.times(&m).plus(&t.times(&p.plus(&g, -1).times(&ps.plus(&gs, -1))), -1)
+                    }
+                    Equation::Turn(place) => at(place).times(&starred).plus(&delta, -1),
+                    Equation::Ground(place) => at(place).plus(&delta, -1),
+                    Equation::GroundStarred(place) => at(place).plus(&starred, -1),
+                };
                 let error = exact.plus(&Exact::of(*of), -1);
                 let bound = residual_error(&displacements, &midpoint, link, j).get();
                 assert!(error.is_within(bound), "{index} {row}");
