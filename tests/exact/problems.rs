@@ -1,4 +1,4 @@
-//! The shipped nine-point problems from file to record.
+//! The shipped problems of exact synthesis from file to record.
 
 use crate::common::{bytes, load, parse, root, run_on};
 use linkwright::internals::judge::verify::verify;
@@ -39,6 +39,20 @@ fn problem_3_is_solved_certified_and_the_same_on_any_number_of_threads() {
     let best = &record.candidates[0];
     assert!(best.accepted && best.certified.is_some() && exact.linkages[0].rank == 1);
     assert_eq!(bytes(&run("wms3", 1)), bytes(&record));
+}
+
+#[test]
+fn five_points_on_given_pivots_have_36_linkages_two_of_them_to_be_built() {
+    let record = run("bolt-holes", 2);
+    holds_its_expectation("bolt-holes", &record);
+    let exact = record.exact.as_ref().expect("exact answers");
+    assert_eq!((exact.pivots, exact.census.certified, exact.census.not_told_apart), (2, 36, 0));
+    let accepted: Vec<_> = record.candidates.iter().filter(|c| c.accepted).collect();
+    assert_eq!(accepted.len(), 2);
+    assert!(
+        accepted.iter().all(|c| c.linkage.follower_pivot() == point([4.0, 0.5]) && c.certified.is_some())
+    );
+    assert_eq!(bytes(&run("bolt-holes", 1)), bytes(&record));
 }
 
 #[test]
