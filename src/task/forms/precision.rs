@@ -89,9 +89,7 @@ pub enum Refusal {
     )]
     Timed,
     /// Two points coincide, two poses, or a point and a pose.
-    #[error(
-        "targets {first} and {second} are at one place, and method = \"continuation\" needs different ones"
-    )]
+    #[error("targets {first} and {second} are one, and method = \"continuation\" needs different ones")]
     Coincident {
         /// Index of the one, counted from 0.
         first: usize,
