@@ -608,7 +608,7 @@ export interface Expect {
   rms_deg?: number;
 }
 /**
- * The number of linkages through nine points, up to cognates.
+ * The number of linkages through nine points, up to cognates, or through poses and points.
  */
 export interface ExpectedCensus {
   /**
