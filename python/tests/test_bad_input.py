@@ -14,7 +14,6 @@ import linkwright.sweep
 BAD = sorted((ROOT / "tests" / "bad").rglob("*.toml"))
 SWEEPS = [file for file in BAD if file.parent.name == "sweeps"]
 
-
 # How the tables of linkage files begin.
 LINKAGES = ("[linkage]", "[vector_loop]", "[chain", "[slider_crank]", "[inverted_slider_crank]")
 
