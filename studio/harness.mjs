@@ -136,11 +136,14 @@ export async function drawer(page, name) {
   if (!(await page.locator(`#${name}`).evaluate((one) => one.open))) await page.locator(`#${name} > summary`).click();
 }
 
-/** Loads an example of the gallery by its number. The examples come with the second script: the first click waits for it. */
+/** Loads an example of the gallery by its number. Those without a picture come with the second script, which the first
+ * click of them loads. */
 export async function example(page, number) {
   if (await page.locator("#gallery").isHidden()) await button(page, "Examples").click();
-  await page.locator("#gallery .example").nth(number).click();
-  await page.waitForFunction(() => globalThis.kit);
+  const one = page.locator("#gallery .example").nth(number);
+  const later = (await one.locator("svg").count()) === 0;
+  await one.click();
+  if (later) await page.waitForFunction(() => globalThis.kit);
 }
 
 /** The problem file that the page saves. */
