@@ -15,7 +15,7 @@ pub fn generic_classes(poses: usize, pivots: usize) -> usize {
     Kind { poses: poses.saturating_sub(1), pivots }.classes()
 }
 
-/// What the exact solution of a problem found.
+/// The result of an exact solution: counts of all solutions, and the list of the real ones.
 ///
 /// A class is one coupler curve through nine points: three cognates with two labels of their links. Where there are poses it
 /// is one linkage, with two labels: cognates turn the coupler differently. So it is where a fixed pivot is given. That each linkage

@@ -8,7 +8,7 @@ use crate::mechanism::any::{
 use crate::mechanism::four_bar::transmission::TransmissionExtremes;
 use crate::mechanism::{Complex, InvertedSliderCrank, SliderCrank, turned};
 
-/// What a linkage with a slider adds to its kinematics to be a mechanism of any kind.
+/// Names, joints and guide of a linkage with a slider, which make it a mechanism of any kind.
 trait Described: SliderLinkage {
     /// The kind as a word of files.
     const KIND: &'static str;

@@ -68,7 +68,7 @@ pub struct Displacements<Z = Complex> {
     pub delta: [Z; STEPS],
     /// Their starred twins, and the denominators of the turns.
     pub starred: [Z; STEPS],
-    /// What the entries are.
+    /// The kind of problem, which says what each entry holds.
     pub kind: Kind,
 }
 
