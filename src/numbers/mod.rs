@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | [`arithmetic`] | `arithmetic/lib.rs` | points of the plane, eight numbers side by side, double-double numbers, random streams |
 //! | [`optimise`] | `optimise/lib.rs` | least squares (Levenberg-Marquardt), population searches, convex programs |
-//! | [`nine_point`] | `nine_point/lib.rs` | all four-bars through nine points, by homotopy continuation |
+//! | [`nine_point`] | `nine_point/lib.rs` | all four-bars through nine points, or through poses, points and given pivots, by homotopy continuation |
 //! | [`bound`] | `bound/lib.rs` | lower bounds of the sum of squares, by branch and bound |
 //! | [`checker`] | `checker/lib.rs` | the independent check of the proofs of `bound` |
 //! | [`leaves`] | `leaves/lib.rs` | the file format of those proofs |

@@ -12,6 +12,9 @@
 //! are unknowns of their own; in a real linkage they are the conjugates and |T_j| = 1. Generic points have 8652
 //! solutions: 1442 classes of six, three Roberts cognates times two labels of the links.
 //!
+//! The same equations serve targets of p poses beyond the first and q given ground pivots, with 8 - 2 p - 2 q points
+//! ([`target::Kind`]): the T_j of a pose and a given pivot are no unknowns, and have equations of their own in their place.
+//!
 //! [`refinement`] brings a solution to the last digit, [`certificate`] proves that it exists and is the only one
 //! near, [`conjugation`] that it is real, [`distinct`] that two are of different classes. They are built on
 //! double-double numbers and [`discs`].
@@ -35,8 +38,8 @@
 //! | [`refinement`] | Newton's method with residuals in double-double: a solution to more digits than a double holds |
 //! | [`settle`] | homotopy path tracking of all classes: all paths are tracked together, lost ones again in further rounds, and each end is classified |
 //! | [`mod@solve`] | the solver for all classes of a target: tracks straight paths from the start set, tracks lost ones again, and classifies the ends |
-//! | [`start`] | the start set: one solution of each of the 1442 classes at a fixed complex target in general position |
-//! | [`target`] | the problem, nine precision points, and its answer, a solution of the sixteen equations |
+//! | [`start`] | the start sets: one solution of each class at a fixed complex target in general position, of each kind of target |
+//! | [`target`] | the problem, precision points, poses and given pivots, and its answer, a solution of the sixteen equations |
 //! | [`tracker`] | homotopy path tracking of solutions while the displacements move along a straight line: predictor, corrector, step control |
 
 mod careful;
