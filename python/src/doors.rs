@@ -25,9 +25,9 @@ use linkwright::internals::report::Colour;
 use linkwright::internals::report::analysis_csv::analysis_csv;
 use linkwright::internals::report::analysis_sheets::analysis_svg;
 use linkwright::internals::report::analysis_text::analysis_table;
+use linkwright::internals::report::compare::SortKey;
 use linkwright::internals::report::mechanism_sheet::mechanism_svg;
 use linkwright::internals::report::mechanism_text::{mechanism_csv, mechanism_table};
-use linkwright::internals::report::compare::SortKey;
 use linkwright::internals::report::snap::snap_text;
 use linkwright::internals::report::suite::{suite_markdown, suite_text};
 use linkwright::internals::synthesis::snap::{
@@ -216,7 +216,12 @@ pub fn analyze<'py>(
                     let found = analyze_mechanism(&request);
                     let json = serde_json::to_string(&found).map_err(|e| e.to_string())?;
                     let svg = mechanism_svg(&found, &request.linkage);
-                    Ok::<_, String>([json, mechanism_table(&found, Colour::Never), mechanism_csv(&found), svg])
+                    Ok::<_, String>([
+                        json,
+                        mechanism_table(&found, Colour::Never),
+                        mechanism_csv(&found),
+                        svg,
+                    ])
                 })?
                 .map_err(refused)
             }
