@@ -283,7 +283,11 @@ fn row(class: &Class, noise: f64, with: &Arguments) {
                 let beside = yard.map_or(String::new(), |(y, _)| {
                     format!(", {:.4} of the yardstick", c.error.objective / y)
                 });
-                format!("{} at rms/size {:.2e}{beside}", c.linkage_type, c.error.rms_over_size)
+                format!(
+                    "{} at rms/size {:.2e}{beside}",
+                    c.linkage_type.expect("a type"),
+                    c.error.rms_over_size
+                )
             });
             let word = if hit { "hit " } else { "MISS" };
             println!("  {word} {} {index} ({kind}): {found}; {:.1} ms", class.name, finished.search_s * 1e3);

@@ -143,7 +143,7 @@ struct Search {
 
 /// Returns the length of the longest of ground, a, b, c, d and e.
 fn longest(candidate: &Candidate) -> f64 {
-    let linkage = &candidate.linkage;
+    let linkage = candidate.linkage.four_bar().expect("a four-bar");
     linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
 }
 

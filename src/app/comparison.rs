@@ -7,8 +7,8 @@ use crate::files::problem_file::ProblemFile;
 use crate::judge::assess::{assess, assess_again};
 use crate::judge::figures::extent;
 use crate::judge::verify::verify_candidate;
-use crate::mechanism::Unit;
 use crate::mechanism::{FourBar, LinkageError};
+use crate::mechanism::{OneLoop, Unit};
 use crate::record::Candidate;
 use crate::record::digest::digest;
 use crate::report::certificate::headline;
@@ -52,6 +52,8 @@ enum NotMeasured {
     Linkage(#[from] LinkageError),
     #[error("it cannot be assembled at every {noun} of {name}")]
     NotAssembled { name: String, noun: &'static str },
+    #[error("a {kind} is compared on the target that it was found for alone")]
+    OfASlider { kind: &'static str },
 }
 
 /// The target that errors are measured against, with the problem that it belongs to.
@@ -121,6 +123,14 @@ impl Target {
                 name: self.name.clone(),
                 noun: self.problem.spec().task.noun(),
             })
+    }
+
+    /// As [`Self::nearest`], of a linkage of any kind; one with a slider is measured at its own target alone.
+    fn nearest_to(&self, linkage: &OneLoop, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
+        match linkage.four_bar() {
+            Some(linkage) => self.nearest(linkage, unit),
+            None => Err(NotMeasured::OfASlider { kind: linkage.kind().name() }),
+        }
     }
 
     /// Returns a candidate judged at its own positions and in its own frame.
@@ -273,7 +283,7 @@ impl Measured {
             Ok(recorded.clone())
         } else {
             let there = same.then(|| on.at(recorded)).flatten();
-            there.map_or_else(|| on.nearest(&recorded.linkage, own.unit), Ok)
+            there.map_or_else(|| on.nearest_to(&recorded.linkage, own.unit), Ok)
         };
         let entry = measured
             .map(|candidate| Entry { untrue: found, ..on.entry(label.clone(), candidate, own.unit, true) });

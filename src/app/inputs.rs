@@ -6,7 +6,6 @@ use crate::app::job::folder::{FolderError, RECORD, read_record};
 use crate::files::diagnostic::Diagnostic;
 use crate::files::linkage_file;
 use crate::files::linkage_file::{AnyLinkageFile, LinkageFile};
-use crate::mechanism::Linkage;
 use crate::record::{Candidate, Pick, Record};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -155,7 +154,7 @@ pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, NotRead> {
         // The name that its linkage file has.
         name: files::linkage_name(&run.record, &chosen.suffix),
         unit: problem.unit,
-        linkage: Linkage::FourBar(chosen.candidate.linkage),
+        linkage: chosen.candidate.linkage.into(),
     })
 }
 

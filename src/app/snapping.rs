@@ -4,7 +4,7 @@
 use crate::app::inputs::{Given, NoCandidate};
 use crate::files::diagnostic::{Diagnostic, escaped};
 use crate::files::input_text;
-use crate::mechanism::{FourBar, Unit, xy};
+use crate::mechanism::{OneLoop, Unit, xy};
 use crate::record::{Candidate, ProblemRecord};
 use crate::report::text::clean;
 use crate::synthesis::snap::{Fixed, Length, Stock, own_curve};
@@ -43,6 +43,9 @@ pub enum NoSubject {
     /// The problem of the record is invalid.
     #[error(transparent)]
     Problem(#[from] TaskError),
+    /// The candidate is of a kind whose lengths are not snapped.
+    #[error("{0} is no four-bar, and lengths of four-bars alone are brought to stock sizes")]
+    OfAnotherKind(String),
     /// The candidate lacks a position.
     #[error("{0} has no position for each of the target's points")]
     Positions(String),
@@ -65,6 +68,9 @@ impl Subject {
             Given::Run(run) => {
                 let chosen = run.one()?;
                 let (label, candidate) = (escaped(&chosen.label), chosen.candidate.clone());
+                if candidate.linkage.four_bar().is_none() {
+                    return Err(NoSubject::OfAnotherKind(label));
+                }
                 let ProblemRecord { name, source, unit, resolved, .. } = run.record.problem;
                 let problem = Problem::new(resolved)?;
                 let points = problem.task().len();
@@ -79,14 +85,14 @@ impl Subject {
 
 /// Returns the dimensions that are fixed: those of the linkage that are kept (`ground, a, b, c, d, e, A, B` or
 /// `ground_angle_deg`), and those that are put at a value of their own.
-pub fn fixed(linkage: &FourBar, keep: &[String], set: &[(String, f64)]) -> Fixed {
+pub fn fixed(linkage: &OneLoop, keep: &[String], set: &[(String, f64)]) -> Fixed {
     let mut fixed = Fixed::default();
     let angle = linkage.ground_angle().to_degrees();
     for key in keep {
         match (Length::named(key), key.as_str()) {
             (Some(length), _) => fixed = fixed.with(length, length.of(linkage)),
             (None, "A") => fixed.crank_pivot = Some(xy(linkage.crank_pivot())),
-            (None, "B") => fixed.follower_pivot = Some(xy(linkage.follower_pivot())),
+            (None, "B") => fixed.follower_pivot = linkage.second_pivot().map(xy),
             (None, _) => fixed.ground_angle_deg = Some(angle),
         }
     }

@@ -7,7 +7,7 @@ use crate::judge::error::{StructuralError, distances_to_curve, rms};
 use crate::judge::loosen::design_limits;
 use crate::judge::referee::judge;
 use crate::judge::requirement::{Judged, at_least, at_most};
-use crate::mechanism::{AssemblyMode, Complex, FourBar, point};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, InputRange, OneLoop, point};
 use crate::record::{
     AngleErrorRecord, Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord,
 };
@@ -27,7 +27,7 @@ pub use crate::record::MET_TOLERANCE;
 /// If there are fewer angles or assemblies than points.
 pub fn assess(
     problem: &Problem,
-    linkage: &FourBar,
+    linkage: impl Into<OneLoop>,
     crank_deg: &[f64],
     assemblies: &[AssemblyMode],
 ) -> Option<Candidate> {
@@ -56,15 +56,19 @@ pub fn measure_curve(problem: &Problem, candidate: &mut Candidate) {
 /// If there are fewer angles or assemblies than points.
 pub fn assess_on_curve(
     problem: &Problem,
-    linkage: &FourBar,
+    linkage: impl Into<OneLoop>,
     at: (&[f64], &[AssemblyMode]),
     own: Option<Reference>,
     to_curve: Option<CurveErrorRecord>,
 ) -> Option<Candidate> {
-    let (crank_deg, assemblies) = at;
+    let (linkage, (crank_deg, assemblies)) = (linkage.into(), at);
+    let linkage = &linkage;
     let task = problem.task();
     let crank_angles: Vec<f64> = crank_deg.iter().map(|d| d.to_radians()).collect();
-    let linkage_type = linkage.linkage_type()?;
+    let mobility = linkage.mobility();
+    if mobility.input == InputRange::None {
+        return None;
+    }
     // Coincident pivots do not give a linkage to build: there is no ratio and no ground line.
     if !linkage.link_ratio().is_finite() {
         return None;
@@ -75,13 +79,13 @@ pub fn assess_on_curve(
         None => distances_to_curve(task.points(), linkage, crank_angles[0], assemblies[0])?,
     };
     let verdict = judge(task, linkage, &crank_angles, assemblies);
-    let over = problem.spec().require.transmission_over.unwrap_or(if linkage_type.input_turns_fully() {
+    let over = problem.spec().require.transmission_over.unwrap_or(if mobility.input_turns_fully() {
         TransmissionOver::Cycle
     } else {
         TransmissionOver::Used
     });
     let extremes = match over {
-        TransmissionOver::Cycle => linkage.transmission_over_cycle(),
+        TransmissionOver::Cycle => linkage.transmission_over_cycle()?,
         TransmissionOver::Used => verdict.motion.transmission(),
     };
     let rms = rms(error.sum_sq, task.len());
@@ -121,8 +125,8 @@ pub fn assess_on_curve(
             output: of_link.filter(|_| is_function),
             to_raw: None,
         },
-        linkage_type,
-        grashof_margin: linkage.grashof_margin(),
+        linkage_type: mobility.linkage_type,
+        grashof_margin: mobility.margin,
         transmission_deg: TransmissionRecord {
             min: extremes.min.to_degrees(),
             max: extremes.max.to_degrees(),
@@ -150,7 +154,7 @@ pub fn assess_on_curve(
 /// another task.
 fn offsets_deg(
     problem: &Problem,
-    linkage: &FourBar,
+    linkage: &OneLoop,
     crank_deg: &[f64],
     error: &StructuralError,
 ) -> Option<[f64; 2]> {
@@ -215,25 +219,27 @@ fn requirements(judged: &Judged<'_>) -> Vec<Requirement> {
 }
 
 /// Returns the design table's limits, each with the linkage's own value.
-fn design_rows(problem: &Problem, linkage: &FourBar) -> Vec<Requirement> {
-    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-    let offset = linkage.coupler_offset();
+fn design_rows(problem: &Problem, linkage: &OneLoop) -> Vec<Requirement> {
+    let (a, offset) = (linkage.crank_pivot(), linkage.coupler_offset());
+    let (four_bar, second) = (linkage.four_bar(), linkage.second_pivot());
+    // The keys of other kinds bound nothing of this one.
     let values = [
-        ("design.Ax", a.re),
-        ("design.Ay", a.im),
-        ("design.Bx", b.re),
-        ("design.By", b.im),
-        ("design.a", linkage.crank()),
+        ("design.Ax", Some(a.re)),
+        ("design.Ay", Some(a.im)),
+        ("design.Bx", second.map(|b| b.re)),
+        ("design.By", second.map(|b| b.im)),
+        ("design.a", Some(linkage.crank())),
         ("design.b", linkage.coupler()),
-        ("design.c", linkage.follower()),
-        ("design.d", linkage.crank_side()),
-        ("design.e", linkage.follower_side()),
+        ("design.c", four_bar.map(FourBar::follower)),
+        ("design.d", Some(linkage.crank_side())),
+        ("design.e", four_bar.map(FourBar::follower_side)),
         ("design.ground", linkage.ground()),
-        ("design.ground_angle_deg", linkage.ground_angle().to_degrees()),
-        ("design.coupler_x", offset.re),
-        ("design.coupler_y", offset.im),
+        ("design.ground_angle_deg", second.map(|_| linkage.ground_angle().to_degrees())),
+        ("design.coupler_x", Some(offset.re)),
+        ("design.coupler_y", Some(offset.im)),
     ];
-    let row = |(name, value): (&str, f64)| {
+    let row = |(name, value): (&str, Option<f64>)| {
+        let value = value?;
         let Limits(low, high) = design_limits(&problem.spec().design, name)?;
         let value = match name {
             // The angle nearest to the middle of its limits.

@@ -2,7 +2,7 @@
 
 use super::rank::exact_sum_sq;
 use crate::judge::mechanisms::solution_of;
-use crate::mechanism::FourBar;
+use crate::mechanism::OneLoop;
 use crate::numbers::nine_point::Solution;
 use crate::numbers::nine_point::certificate::{Certificate, certify};
 use crate::record::{Candidate, Certified};
@@ -22,14 +22,18 @@ const SAME: f64 = 1e-7;
 const ROUNDED: f64 = 1e3 * f64::EPSILON;
 
 /// Returns whether two linkages are the same up to rounding.
-pub fn same(one: &FourBar, other: &FourBar) -> bool {
-    let numbers = |l: &FourBar| {
-        let (a, b, offset) = (l.crank_pivot(), l.follower_pivot(), l.coupler_offset());
-        [a.re, a.im, b.re, b.im, l.crank(), l.coupler(), l.follower(), offset.re, offset.im]
+pub fn same(one: &OneLoop, other: &OneLoop) -> bool {
+    let numbers = |l: &OneLoop| match l {
+        OneLoop::FourBar(l) => {
+            let (a, b, offset) = (l.crank_pivot(), l.follower_pivot(), l.coupler_offset());
+            [a.re, a.im, b.re, b.im, l.crank(), l.coupler(), l.follower(), offset.re, offset.im]
+        }
+        OneLoop::SliderCrank(_) | OneLoop::InvertedSliderCrank(_) => l.numbers(),
     };
-    let far = one.crank_pivot().norm().max(one.follower_pivot().norm());
+    let far = one.pivots().map(|pivot| pivot.norm()).fold(0.0, f64::max);
     let reach = SAME * one.longest_link().max(one.crank_side()) + ROUNDED * far;
-    numbers(one).iter().zip(numbers(other)).all(|(x, y)| (x - y).abs() <= reach)
+    let near = numbers(one).iter().zip(numbers(other)).all(|(x, y)| (x - y).abs() <= reach);
+    one.kind() == other.kind() && near
 }
 
 /// Returns the points and poses of a problem that has exact answers.
@@ -44,7 +48,7 @@ pub fn target(problem: &Problem) -> Option<Precise> {
 /// computing that distance.
 pub fn certified(of: &Precise, candidate: &Candidate) -> Option<Certified> {
     let Precise { target, places } = of;
-    let linkage = &candidate.linkage;
+    let linkage = candidate.linkage.four_bar()?;
     let angles: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
     let given = solution_of(of, linkage, &angles, &candidate.t1_at)?;
     let proof = certify(target, &given).ok().filter(Certificate::is_real)?;

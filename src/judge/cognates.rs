@@ -17,7 +17,7 @@ use super::unwrapped::unwrapped;
 use crate::judge::assess::assess_on_curve;
 use crate::mechanism::four_bar::cognate::{Cognate, OriginalLink};
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, FourBar};
+use crate::mechanism::{AssemblyMode, OneLoop};
 use crate::record::{Alternative, Candidate};
 use crate::task::Problem;
 use crate::task::{AngleOffset, Timing};
@@ -38,8 +38,8 @@ const SAME_POINT: f64 = 1e-7;
 pub fn first_apart(size: f64, one: At<'_>, other: At<'_>) -> Option<usize> {
     let span = one.0.longest_link().max(other.0.longest_link()).max(size);
     let point = |(linkage, crank_deg, t1_at): At<'_>, i: usize| {
-        let joints = linkage.position_with(crank_deg.get(i)?.to_radians(), *t1_at.get(i)?).joints()?;
-        Some(joints.coupler_point)
+        let at = linkage.joints_with(crank_deg.get(i)?.to_radians(), *t1_at.get(i)?)?;
+        Some(at.joints.coupler_point)
     };
     (0..one.1.len().min(other.1.len())).find(|&i| {
         !point(one, i).zip(point(other, i)).is_some_and(|(p, q)| (p - q).norm() <= SAME_POINT * span)
@@ -56,7 +56,7 @@ const ROUNDED: f64 = 32.0 * f64::EPSILON;
 ///
 /// Each error vector is the difference of a point and a coupler point, off by at most r, `ROUNDED` of the largest
 /// coordinate or length of the two linkages and the points; so that |sqrt(s_1) - sqrt(s_2)| <= 2 r sqrt(n).
-pub fn has_error_of(problem: &Problem, candidate: &Candidate, form: (&FourBar, f64), times: f64) -> bool {
+pub fn has_error_of(problem: &Problem, candidate: &Candidate, form: (&OneLoop, f64), times: f64) -> bool {
     let (linkage, sum_sq) = form;
     let task = problem.task();
     let of_points = task.points().iter().fold(0.0, |reach: f64, p| reach.max(p.norm()));
@@ -68,13 +68,13 @@ pub fn has_error_of(problem: &Problem, candidate: &Candidate, form: (&FourBar, f
 }
 
 /// Returns the largest number that a coupler point of a linkage is computed from.
-fn magnitude(linkage: &FourBar) -> f64 {
-    let pivots = linkage.crank_pivot().norm().max(linkage.follower_pivot().norm());
+fn magnitude(linkage: &OneLoop) -> f64 {
+    let pivots = linkage.pivots().map(|pivot| pivot.norm()).fold(0.0, f64::max);
     pivots.max(linkage.longest_link()).max(linkage.crank_side())
 }
 
 /// A linkage with its crank angle (degrees) and assembly at each point.
-pub type At<'a> = (&'a FourBar, &'a [f64], &'a [AssemblyMode]);
+pub type At<'a> = (&'a OneLoop, &'a [f64], &'a [AssemblyMode]);
 
 /// The order of linkages of the same curve and error, on a grid above rounding; less is better.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
@@ -129,7 +129,8 @@ pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
     let Some((angle, t1)) = candidate.crank_deg.first().zip(candidate.t1_at.first()) else {
         return Vec::new();
     };
-    let found = candidate.linkage.with_assembly(*t1).cognates_at(angle.to_radians());
+    let Some(linkage) = candidate.linkage.four_bar() else { return Vec::new() };
+    let found = linkage.with_assembly(*t1).cognates_at(angle.to_radians());
     let judged = |cognate: Cognate| {
         let (angles, t1_at) = positions(candidate, &cognate)?;
         let linkage = cognate.linkage.with_assembly(*t1_at.first()?);

@@ -3,10 +3,10 @@
 use crate::mechanism::effort::{POINTS_AT_ONCE, computed};
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar};
+use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, LoopJoints, OneLoop};
 use crate::record::{Candidate, CurveErrorRecord};
 use crate::task::ranges::Reference;
-use crate::task::{Body, Problem, Task, best_frame};
+use crate::task::{Body, Link, Problem, Task, best_frame};
 use rayon::prelude::*;
 
 /// The errors at the positions of the targets: T_j - P_j of the place, and of the angle in a motion.
@@ -170,11 +170,12 @@ impl Task {
     /// If there are fewer angles or assemblies than points.
     pub fn errors(
         &self,
-        linkage: &FourBar,
+        linkage: impl Into<OneLoop>,
         crank_angles: &[f64],
         assemblies: &[AssemblyMode],
         own: Option<Reference>,
     ) -> Option<StructuralError> {
+        let linkage = linkage.into();
         computed(self.len());
         let mut error = StructuralError {
             structural: Vec::new(),
@@ -186,9 +187,12 @@ impl Task {
         };
         let mut lines = Vec::new();
         for j in 0..self.len() {
-            let joints = linkage.position_with(crank_angles[j], assemblies[j]).joints()?;
+            let LoopJoints { joints, coupler } = linkage.joints_with(crank_angles[j], assemblies[j])?;
             if let Some(body) = self.body() {
-                let line = body.line([linkage.follower_pivot(), joints.crank_pin, joints.follower_pin]);
+                let line = match body.link {
+                    Link::Coupler => coupler,
+                    Link::Follower { .. } => joints.follower_pin - linkage.four_bar()?.follower_pivot(),
+                };
                 lines.push(line.arg());
             }
             let Some(&target) = self.points().get(j) else { continue };
@@ -235,11 +239,11 @@ const NEAREST: usize = 150;
 /// that circuit has no point.
 pub fn distances_to_curve(
     points: &[Complex],
-    linkage: &FourBar,
+    linkage: impl Into<OneLoop>,
     crank_angle: f64,
     assembly: AssemblyMode,
 ) -> Option<CurveErrorRecord> {
-    let curve = CouplerCurve::through(linkage, crank_angle, assembly, DEFAULT_SAMPLES);
+    let curve = CouplerCurve::through(&linkage.into(), crank_angle, assembly, DEFAULT_SAMPLES);
     computed(NEAREST * points.len());
     // In parallel, and summed in the order of the points: the number of threads changes no digit.
     let distances: Option<Vec<f64>> = points

@@ -11,7 +11,7 @@ use super::unwrapped::unwrapped;
 use crate::judge::assess::{assess, assess_on_curve};
 use crate::judge::error::rms;
 use crate::judge::referee::judge;
-use crate::mechanism::{AssemblyMode, FourBar};
+use crate::mechanism::{AssemblyMode, FourBar, OneLoop};
 use crate::numbers::nine_point::Solution;
 use crate::record::{Candidate, Certified, CurveErrorRecord, ExactForm, ExactLinkage};
 use crate::task::Problem;
@@ -93,7 +93,7 @@ pub fn class(problem: &Problem, target: &Precise, solution: &Solution, depth: De
 /// Returns the errors at the points, in place of those to the curve.
 fn at_points(
     problem: &Problem,
-    linkage: &FourBar,
+    linkage: impl Into<OneLoop>,
     crank_deg: &[f64],
     t1_at: &[AssemblyMode],
 ) -> Option<CurveErrorRecord> {
@@ -221,8 +221,8 @@ fn form(problem: &Problem, mechanism: &Mechanism, by: f64) -> Option<ExactForm> 
     let radians: Vec<f64> =
         crank_deg.iter().zip(signs).map(|(deg, sign)| deg.to_radians() + sign * by).collect();
     Some(ExactForm {
-        linkage: mechanism.linkage,
-        linkage_type: mechanism.linkage.linkage_type()?,
+        linkage: mechanism.linkage.into(),
+        linkage_type: Some(mechanism.linkage.linkage_type()?),
         defects: judge(problem.task(), &mechanism.linkage, &radians, &t1_at).defects,
     })
 }

@@ -2,7 +2,6 @@
 
 use crate::judge::practicality::sensitivity_of;
 use crate::judge::referee::judge;
-use crate::mechanism::FourBar;
 use crate::record::{Candidate, Figures};
 use crate::task::Problem;
 
@@ -14,11 +13,6 @@ pub fn extent(problem: &Problem, candidate: &Candidate) -> f64 {
     (x1 - x0).hypot(y1 - y0)
 }
 
-/// Returns the longest of ground, a, b, c, d and e.
-pub fn longest(linkage: &FourBar) -> f64 {
-    linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
-}
-
 /// Returns all figures of a candidate; `None` if the path has no direction at any point (every point is at a toggle).
 pub fn figures(problem: &Problem, candidate: &Candidate) -> Option<Figures> {
     let felt = sensitivity_of(problem, candidate)?;
@@ -27,7 +21,7 @@ pub fn figures(problem: &Problem, candidate: &Candidate) -> Option<Figures> {
         max: candidate.error.max,
         transmission_deg: candidate.transmission_deg.worst,
         extent: extent(problem, candidate),
-        longest: longest(&candidate.linkage),
+        longest: candidate.linkage.longest(),
         link_ratio: candidate.link_ratio,
         sensitivity: felt.band,
     })

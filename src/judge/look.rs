@@ -1,7 +1,7 @@
 //! Difference of two candidates, to tell distinct answers apart: by their joints at the first point, cognates included,
 //! and by their coupler curves.
 
-use crate::mechanism::{Complex, CouplerCurve, nearest_share};
+use crate::mechanism::{Complex, CouplerCurve, OneLoop, nearest_share};
 use crate::record::Candidate;
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -21,7 +21,7 @@ type Joints = [Complex; 5];
 pub(super) struct Look<'a> {
     candidate: Cow<'a, Candidate>,
     /// The joints at the first point of the candidate and of its two cognates, each also with its sides exchanged.
-    forms: OnceCell<Option<[Joints; 6]>>,
+    forms: OnceCell<Option<Vec<Joints>>>,
     at_points: OnceCell<Vec<Complex>>,
     outline: OnceCell<Vec<Complex>>,
 }
@@ -33,18 +33,29 @@ impl<'a> Look<'a> {
     }
 
     /// Returns the joints of the candidate and its cognates, by the table of [`crate::mechanism::four_bar::cognate`].
-    fn forms(&self) -> Option<&[Joints; 6]> {
+    fn forms(&self) -> Option<&[Joints]> {
         let made = || {
             let linkage = &self.candidate.linkage;
             let (angle, t1) = self.candidate.crank_deg.first().zip(self.candidate.t1_at.first())?;
-            let joints = linkage.position_with(angle.to_radians(), *t1).joints()?;
-            let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
+            let joints = linkage.joints_with(angle.to_radians(), *t1)?.joints;
             let (c, d, p) = (joints.crank_pin, joints.follower_pin, joints.coupler_point);
+            let a = linkage.crank_pivot();
+            let linkage = match linkage {
+                OneLoop::FourBar(linkage) => linkage,
+                OneLoop::SliderCrank(linkage) => {
+                    let along = linkage.line_direction() * linkage.coupler();
+                    return Some(vec![[a, d + along, c, d, p], [a, d - along, c, d, p]]);
+                }
+                OneLoop::InvertedSliderCrank(linkage) => {
+                    return Some(vec![[a, linkage.block_pivot(), c, d, p]]);
+                }
+            };
+            let b = linkage.follower_pivot();
             let z = linkage.coupler_ratio();
             let g = linkage.cognate_pivot();
             let rest = 1.0 - z;
             let (w2, w3, w4) = (c - a, d - c, d - b);
-            Some([
+            Some(vec![
                 [a, b, c, d, p],
                 [b, a, d, c, p],
                 [a, g, a + z * w3, g + z * w4, p],
@@ -53,7 +64,7 @@ impl<'a> Look<'a> {
                 [g, b, g + rest * w2, b - rest * w3, p],
             ])
         };
-        self.forms.get_or_init(made).as_ref()
+        self.forms.get_or_init(made).as_deref()
     }
 
     /// Returns the difference of this candidate from another and its cognates: the largest distance of a joint from its
@@ -77,8 +88,8 @@ impl<'a> Look<'a> {
                 .iter()
                 .zip(&candidate.t1_at)
                 .step_by(every)
-                .filter_map(|(deg, t1)| candidate.linkage.position_with(deg.to_radians(), *t1).joints())
-                .map(|joints| joints.coupler_point)
+                .filter_map(|(deg, t1)| candidate.linkage.joints_with(deg.to_radians(), *t1))
+                .map(|at| at.joints.coupler_point)
                 .collect()
         })
     }

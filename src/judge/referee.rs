@@ -19,12 +19,12 @@ use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::{step_along, wrapped};
 use crate::mechanism::four_bar::transmission::TransmissionExtremes;
 use crate::mechanism::{
-    AssemblyMode, FourBar, InputArc, Joints, OnCircuit, bounding_box, least_and_greatest,
+    AssemblyMode, Complex, InputArc, Joints, OnCircuit, OneLoop, bounding_box, least_and_greatest,
 };
 use crate::task::Defect;
 use crate::task::defect::ORDER_TOLERANCE;
 use crate::task::{Return, Task, Timing};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 /// Number of samples of the motion between two neighbouring points on which closure is checked.
 const CLOSURE_SAMPLES: usize = 24;
@@ -35,7 +35,7 @@ const MOST_CLOSURE_SAMPLES: usize = 20_000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct UsedMotion {
     /// The linkage on the circuit of the first point.
-    pub on: OnCircuit,
+    pub on: OnCircuit<OneLoop>,
     /// The range of the circuit's parameter, low to high, at most a whole turn.
     pub range: [f64; 2],
 }
@@ -59,7 +59,13 @@ pub struct Verdict {
 ///
 /// # Panics
 /// If there are fewer angles or assemblies than points.
-pub fn judge(task: &Task, linkage: &FourBar, crank_angles: &[f64], assemblies: &[AssemblyMode]) -> Verdict {
+pub fn judge(
+    task: &Task,
+    linkage: impl Into<OneLoop>,
+    crank_angles: &[f64],
+    assemblies: &[AssemblyMode],
+) -> Verdict {
+    let linkage = linkage.into();
     let n = task.len();
     let samples = (CLOSURE_SAMPLES * n).min(MOST_CLOSURE_SAMPLES);
     computed(n + samples);
@@ -74,7 +80,7 @@ pub fn judge(task: &Task, linkage: &FourBar, crank_angles: &[f64], assemblies: &
     let mut off_branch = Vec::new();
     for j in 0..n {
         let branch = mobility.branch(crank_angles[j], assemblies[j]);
-        let open = !linkage.position_with(crank_angles[j], assemblies[j]).is_closed();
+        let open = linkage.joints_with(crank_angles[j], assemblies[j]).is_none();
         // A rocking crank cannot get from one turn to the next, even if the angles agree modulo a turn.
         let other_turn = prescribed
             && on.arc.is_some_and(|arc| {
@@ -231,17 +237,9 @@ impl UsedMotion {
         self.range[0] + (self.range[1] - self.range[0]) * i as f64 / of as f64
     }
 
-    /// Returns the extremes of the transmission angle over the motion, in closed form: they lie at its ends, where the
-    /// crank lies along the ground, or at a toggle.
+    /// Returns the extremes of the transmission angle over the motion, in closed form.
     pub fn transmission(&self) -> TransmissionExtremes {
-        let [low, high] = self.range;
-        let linkage = &self.on.linkage;
-        let ground = linkage.ground_angle();
-        let extreme: &[f64] =
-            if self.on.arc.is_some() { &[0.0, FRAC_PI_2, PI, -FRAC_PI_2] } else { &[ground, ground + PI] };
-        let inside = extreme.iter().map(|t| low + (t - low).rem_euclid(TAU)).filter(|t| *t <= high);
-        let all = [low, high].into_iter().chain(inside);
-        linkage.transmission_at(all.map(|t| linkage.diagonal(self.on.position_at(t).0)))
+        self.on.transmission_between(self.range)
     }
 
     /// Returns [xmin, ymin, xmax, ymax] of A, B, C, D and P over the motion: dense samples, each extreme refined by
@@ -249,7 +247,7 @@ impl UsedMotion {
     pub fn footprint(&self) -> [f64; 4] {
         const SAMPLES: usize = 720;
         let joints_of = |j: &Joints| [j.crank_pin, j.follower_pin, j.coupler_point];
-        let mut reached = vec![self.on.linkage.crank_pivot(), self.on.linkage.follower_pivot()];
+        let mut reached: Vec<Complex> = self.on.linkage.pivots().collect();
         let step = (self.range[1] - self.range[0]) / SAMPLES as f64;
         // Each sample once, for all joints and directions.
         let [low, high] = self.range;

@@ -14,7 +14,7 @@
 use super::look::{Look, NEAR};
 use super::unwrapped::unwrapped;
 use crate::judge::assess::assess_again;
-use crate::mechanism::{AssemblyMode, Complex, FourBar, NaturalCoordinates};
+use crate::mechanism::{AssemblyMode, Complex, OneLoop};
 use crate::record::Candidate;
 use crate::task::Problem;
 use crate::task::{AngleOffset, Timing};
@@ -124,31 +124,18 @@ impl Symmetry {
         (fits && of_point && as_timed).then_some(Symmetry { mirrors, turn, shift, order })
     }
 
-    fn carried(&self, p: Complex) -> Complex {
-        self.shift + self.turn * if self.mirrors { p.conj() } else { p }
-    }
-
     fn image(&self, problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
         let n = self.order.len();
         if candidate.crank_deg.len() != n || candidate.t1_at.len() != n {
             return None;
         }
-        let own = candidate.linkage.natural_coordinates();
-        let moved = |[x, y]: [f64; 2]| crate::mechanism::xy(self.carried(Complex::new(x, y)));
-        let mut linkage = FourBar::new(NaturalCoordinates {
-            crank_pivot: moved(own.crank_pivot),
-            follower_pivot: moved(own.follower_pivot),
-            assembly: if self.mirrors { own.assembly.opposite() } else { own.assembly },
-            side: if self.mirrors { own.side.opposite() } else { own.side },
-            ..own
-        })
-        .ok()?;
+        let mut linkage = candidate.linkage.carried(self.mirrors, self.turn, self.shift).ok()?;
         let turned = self.turn.arg().to_degrees();
         let (mut crank_deg, mut t1_at) = (vec![0.0; n], vec![AssemblyMode::Plus; n]);
         for (j, &to) in self.order.iter().enumerate() {
             let (deg, t1) = (candidate.crank_deg[j], candidate.t1_at[j]);
             crank_deg[to] = turned + if self.mirrors { -deg } else { deg };
-            t1_at[to] = if self.mirrors { t1.opposite() } else { t1 };
+            t1_at[to] = linkage.carried_assembly(self.mirrors, t1);
         }
         linkage = linkage.with_assembly(*t1_at.first()?);
         match problem.task().timing() {
@@ -163,7 +150,7 @@ impl Symmetry {
 }
 
 /// Returns the prescribed angles of a linkage, if the angles that it has are equal to them up to whole turns.
-fn in_step(problem: &Problem, linkage: &FourBar, offset: AngleOffset, has: &[f64]) -> Option<Vec<f64>> {
+fn in_step(problem: &Problem, linkage: &OneLoop, offset: AngleOffset, has: &[f64]) -> Option<Vec<f64>> {
     let (task, written) = (problem.task(), &problem.spec().task.timing.as_ref()?.crank_deg);
     let timed = (0..has.len()).find(|j| !task.is_untimed(*j))?;
     let (first, asked) = (*has.get(timed)?, *written.get(timed)?);

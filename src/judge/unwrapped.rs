@@ -1,7 +1,7 @@
 //! Crank angles unwrapped along the motion through the points.
 
 use crate::mechanism::four_bar::mobility::{ways_round, wrapped};
-use crate::mechanism::{AssemblyMode, FourBar};
+use crate::mechanism::{AssemblyMode, OneLoop};
 use crate::task::Problem;
 use crate::task::defect::ORDER_TOLERANCE;
 use std::f64::consts::TAU;
@@ -11,11 +11,11 @@ use std::f64::consts::TAU;
 /// has the first one's angle, a turn later.
 pub fn unwrapped(
     problem: &Problem,
-    linkage: &FourBar,
+    linkage: impl Into<OneLoop>,
     angles: Vec<f64>,
     mut assemblies: Vec<AssemblyMode>,
 ) -> (Vec<f64>, Vec<AssemblyMode>) {
-    let mobility = linkage.mobility();
+    let mobility = linkage.into().mobility();
     let arc = mobility.arc(mobility.branch(angles[0], assemblies[0]).circuit);
     let [forward, backward] = ways_round(angles.windows(2).map(|w| w[1] - w[0]), ORDER_TOLERANCE);
     let direction = if backward < forward { -1.0 } else { 1.0 };

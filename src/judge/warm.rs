@@ -22,7 +22,8 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
     if candidate.crank_deg.len() != n || candidate.t1_at.len() != n {
         return None;
     }
-    let as_it_is = Shape::from(&candidate.linkage);
+    let linkage = candidate.linkage.four_bar()?;
+    let as_it_is = Shape::from(linkage);
     let mut shape = as_it_is;
     if part != 1.0 {
         shorten(&mut shape, part);
@@ -34,7 +35,7 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
         offset = frame.to_radians();
     }
     let scales = problem.task().ranges().nearest(candidate.scales(&problem.spec().task));
-    let side = candidate.linkage.side();
+    let side = linkage.side();
     let setting = Setting { aim, assembly: candidate.t1_at[0], direction, side };
     let design = problem.space(side).design(&shape, offset);
     let positions = match problem.task().timing() {
@@ -76,7 +77,7 @@ fn direction_and_offset(problem: &Problem, candidate: &Candidate) -> (f64, f64) 
 fn positions(candidate: &Candidate, shape: &Shape) -> Option<Positions> {
     let at = candidate.crank_deg.iter().zip(&candidate.t1_at);
     at.map(|(deg, assembly)| {
-        let joints = candidate.linkage.position_with(deg.to_radians(), *assembly).joints()?;
+        let joints = candidate.linkage.joints_with(deg.to_radians(), *assembly)?.joints;
         let (c, d) = (joints.crank_pin, joints.follower_pin);
         Some([(c - shape.crank_pivot) / shape.crank, (d - c) / shape.coupler])
     })

@@ -1,7 +1,7 @@
 //! Exact synthesis: every linkage through nine points, or through a mixture of poses and points that has finitely many,
 //! counted, and the real ones listed.
 
-use crate::mechanism::{AssemblyMode, FourBar, LinkageType};
+use crate::mechanism::{AssemblyMode, LinkageType, OneLoop};
 use crate::numbers::nine_point::target::Kind;
 use crate::task::Defect;
 use serde::{Deserialize, Serialize};
@@ -108,7 +108,7 @@ pub struct ExactLinkage {
     /// Its rank among the candidates, 0 where it is none of them.
     pub rank: usize,
     /// The best of its mechanisms under the problem's requirements.
-    pub linkage: FourBar,
+    pub linkage: OneLoop,
     /// Its crank angle at each point, degrees, unwrapped.
     pub crank_deg: Vec<f64>,
     /// Its assembly at each point.
@@ -116,8 +116,8 @@ pub struct ExactLinkage {
     /// The largest distance of its coupler point from a target point: rounding.
     pub miss: f64,
     /// Its type.
-    #[serde(rename = "type")]
-    pub linkage_type: LinkageType,
+    #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
+    pub linkage_type: Option<LinkageType>,
     /// Its defects.
     pub defects: Vec<Defect>,
     /// min(mu, 180 - mu) at its worst.
@@ -142,16 +142,30 @@ pub struct ExactLinkage {
     pub others: Vec<ExactForm>,
 }
 
+impl ExactLinkage {
+    /// Returns the type of a four-bar, of other kinds the kind.
+    pub fn type_name(&self) -> &'static str {
+        super::type_name(self.linkage_type, &self.linkage)
+    }
+}
+
 /// Another mechanism of a class.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExactForm {
     /// The linkage, assembled as at the first point.
-    pub linkage: FourBar,
+    pub linkage: OneLoop,
     /// Its type.
-    #[serde(rename = "type")]
-    pub linkage_type: LinkageType,
+    #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
+    pub linkage_type: Option<LinkageType>,
     /// Its defects.
     pub defects: Vec<Defect>,
+}
+
+impl ExactForm {
+    /// Returns the type of a four-bar, of other kinds the kind.
+    pub fn type_name(&self) -> &'static str {
+        super::type_name(self.linkage_type, &self.linkage)
+    }
 }
 
 /// A proof that a linkage through the points exists.

@@ -1,6 +1,6 @@
 //! Additions to a candidate's figures: warnings, the same curve by other linkages, families of answers.
 
-use crate::mechanism::{AssemblyMode, FourBar, LinkageType};
+use crate::mechanism::{AssemblyMode, LinkageType, OneLoop};
 use serde::{Deserialize, Serialize};
 
 /// Why a linkage that meets every requirement may still be a poor one to build.
@@ -56,14 +56,14 @@ pub struct Warning {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Alternative {
     /// The linkage.
-    pub linkage: FourBar,
+    pub linkage: OneLoop,
     /// Its crank angle at each target point, degrees, unwrapped.
     pub crank_deg: Vec<f64>,
     /// Its assembly at each target point.
     pub t1_at: Vec<AssemblyMode>,
     /// Its type.
-    #[serde(rename = "type")]
-    pub linkage_type: LinkageType,
+    #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
+    pub linkage_type: Option<LinkageType>,
     /// Whether it would be accepted in the candidate's place.
     pub accepted: bool,
     /// The unweighted sum of squared distances at the points: the candidate's, up to rounding.
@@ -75,6 +75,13 @@ pub struct Alternative {
     /// The requirements that it does not meet.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_met: Vec<String>,
+}
+
+impl Alternative {
+    /// Returns the type of a four-bar, of other kinds the kind.
+    pub fn type_name(&self) -> &'static str {
+        super::type_name(self.linkage_type, &self.linkage)
+    }
 }
 
 /// The best answer is one of a whole family of exact answers.

@@ -17,7 +17,7 @@
 //! | [`suite`] | the figures of a suite: problems with a known answer, many seeds each |
 //! | [`sweep`] | sweeps: many problems that are one problem with different values of some keys |
 
-use crate::mechanism::{AssemblyMode, FourBar, LinkageType, Unit};
+use crate::mechanism::{AssemblyMode, LinkageType, OneLoop, Unit};
 use crate::task::ranges::{Reference, Scales};
 pub use crate::task::requirement::LimitUnit;
 use crate::task::spec::{Method, ProblemSpec, TaskSpec, TransmissionOver};
@@ -254,13 +254,18 @@ pub struct Evaluations {
     pub positions: u64,
 }
 
+/// Returns the type of a four-bar, of other kinds the kind.
+pub fn type_name(linkage_type: Option<LinkageType>, linkage: &OneLoop) -> &'static str {
+    linkage_type.map_or(linkage.kind().name(), LinkageType::name)
+}
+
 /// One answer with every figure and verdict, all recomputed by the referee.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Candidate {
     /// 1 is the best.
     pub rank: usize,
     /// The linkage.
-    pub linkage: FourBar,
+    pub linkage: OneLoop,
     /// The crank angle at each target point, degrees from the x axis, unwrapped.
     pub crank_deg: Vec<f64>,
     /// The assembly at each target point.
@@ -286,10 +291,10 @@ pub struct Candidate {
     pub sense: Option<Sense>,
     /// How far the coupler point is from the target.
     pub error: ErrorRecord,
-    /// The type.
-    #[serde(rename = "type")]
-    pub linkage_type: LinkageType,
-    /// p + q - s - l.
+    /// The type of a four-bar; absent of other kinds.
+    #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
+    pub linkage_type: Option<LinkageType>,
+    /// Of a four-bar p + q - s - l; of other kinds the length that is at least zero where the crank turns fully.
     pub grashof_margin: f64,
     /// The transmission angle's extremes.
     pub transmission_deg: TransmissionRecord,
@@ -320,6 +325,11 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// Returns the type of a four-bar, of other kinds the kind.
+    pub fn type_name(&self) -> &'static str {
+        type_name(self.linkage_type, &self.linkage)
+    }
+
     /// Returns the angle from which the angles of its link count, degrees: in a motion `frame_deg`, from the direction C -> D
     /// to the body's x axis; in a function from the follower's direction to that of an output of zero.
     pub fn own_frame_deg(&self) -> Option<f64> {

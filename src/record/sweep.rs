@@ -5,7 +5,7 @@
 //! `i` (from 0) has the values of the mixed-radix digits of `i`: the last key varies fastest. A [`Row`] is the outcome of
 //! a job.
 
-use crate::mechanism::{FourBar, LinkageType};
+use crate::mechanism::{LinkageType, OneLoop};
 use crate::record::digest::{NotWritten, hex};
 use crate::record::{ErrorRecord, Reason, Record, Tool};
 use serde::{Deserialize, Serialize};
@@ -239,9 +239,9 @@ pub struct Best {
     pub accepted: bool,
     /// Its errors.
     pub error: ErrorRecord,
-    /// Its type.
-    #[serde(rename = "type")]
-    pub linkage_type: LinkageType,
+    /// Its type; absent of other kinds than four-bars.
+    #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
+    pub linkage_type: Option<LinkageType>,
     /// min(mu, 180 - mu) of the transmission angle at its worst, degrees.
     pub transmission_worst_deg: f64,
     /// Longest over shortest link.
@@ -251,7 +251,14 @@ pub struct Best {
     /// The longest of ground, a, b, c, d and e.
     pub longest: f64,
     /// The linkage.
-    pub linkage: FourBar,
+    pub linkage: OneLoop,
+}
+
+impl Best {
+    /// Returns the type of a four-bar, of other kinds the kind.
+    pub fn type_name(&self) -> &'static str {
+        super::type_name(self.linkage_type, &self.linkage)
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! An analysis as text: the mobility in words, and the tables of positions, motion and methods.
 
 use super::analysis_csv::{POSE, RATES};
-use super::csv::{Column, PARAMETERS, names};
+use super::csv::{Column, names};
 use super::grid::Align::{Left, Right};
 use super::grid::{Cell, Colour, Grid, Ink, plain};
 use super::text::{COLUMNS, NO_NUMBER, capitalised, clean, indented, plural, significant, wrapped};
@@ -61,7 +61,8 @@ pub fn analysis_table(analysis: &Analysis, colour: Colour) -> String {
 }
 
 fn linkage_line(linkage: &FourBar, unit: Option<Unit>) -> String {
-    let [ax, ay, bx, by, a, b, c, d, e, ..] = PARAMETERS.map(|(_, of)| significant(of(linkage), 6));
+    let [ax, ay, bx, by, a, b, c, d, e] =
+        linkage.natural_coordinates().numbers().map(|number| significant(number, 6));
     let (ground, unit) = (significant(linkage.ground(), 6), length_suffix(unit));
     indented(&format!(
         "A ({ax}, {ay}), B ({bx}, {by}), ground {ground}, a {a}, b {b}, c {c}, d {d}, e {e}{unit}"

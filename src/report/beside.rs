@@ -78,7 +78,7 @@ fn buildable(record: &Record, candidate: &Candidate) -> String {
         significant(candidate.error.sum_sq, 6),
         significant(candidate.error.rms, 4),
         words::error_unit(record),
-        candidate.linkage_type.name(),
+        candidate.type_name(),
         significant(candidate.transmission_deg.worst, 3),
         significant(candidate.link_ratio, 3),
     );

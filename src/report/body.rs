@@ -1,8 +1,8 @@
 //! The body of a motion, or the follower of a function, at the positions of a candidate: its angles there, and their
 //! errors.
 
-use crate::mechanism::Complex;
 use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::{Complex, LoopJoints};
 use crate::record::Candidate;
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::TaskSpec;
@@ -33,7 +33,7 @@ impl Part {
 /// the loop is open, or the target has no angle.
 pub(super) fn error(task: &TaskSpec, candidate: &Candidate, target: usize, part: Part) -> Option<f64> {
     let (angle, assembly) = (candidate.crank_deg.get(target)?, candidate.t1_at.get(target)?);
-    let joints = candidate.linkage.position_with(angle.to_radians(), *assembly).joints()?;
+    let LoopJoints { joints, coupler } = candidate.linkage.joints_with(angle.to_radians(), *assembly)?;
     match part {
         Part::Place => {
             Some((crate::mechanism::point(*task.points.get(target)?) - joints.coupler_point).norm())
@@ -45,7 +45,6 @@ pub(super) fn error(task: &TaskSpec, candidate: &Candidate, target: usize, part:
                 let wanted = candidate.scales(task)[1] * wanted;
                 return Some(wrapped(sign * wanted - output.to_radians()).abs().to_degrees());
             }
-            let coupler = joints.follower_pin - joints.crank_pin;
             Some(wrapped(wanted - generated(coupler, candidate.frame_deg?)).abs().to_degrees())
         }
     }
@@ -61,6 +60,6 @@ pub(super) fn generated(coupler: Complex, frame_deg: f64) -> f64 {
 /// half a turn, where its pin is; `None` for a candidate of another task.
 pub(super) fn output_deg(candidate: &Candidate, follower_pin: Complex) -> Option<f64> {
     let linkage = &candidate.linkage;
-    let turned = (follower_pin - linkage.follower_pivot()).arg() - linkage.ground_angle();
+    let turned = (follower_pin - linkage.four_bar()?.follower_pivot()).arg() - linkage.ground_angle();
     Some(wrapped(turned - candidate.output_offset_deg?.to_radians()).to_degrees())
 }

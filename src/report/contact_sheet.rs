@@ -100,7 +100,7 @@ pub(super) fn thumbnail_svg(record: &Record, candidate: &Candidate, title: &str)
     let [width, height] = THUMBNAIL;
     let mut canvas = Canvas::default();
     thumbnail(&mut canvas, record, candidate, Area { x: 0.0, y: 0.0, width, height });
-    canvas.document(width, height, title, candidate.linkage_type.name())
+    canvas.document(width, height, title, candidate.type_name())
 }
 
 /// Draws a candidate small into an area.
@@ -122,7 +122,7 @@ fn cell(canvas: &mut Canvas, record: &Record, candidate: &Candidate, layout: &La
     let worst = format!("{worst} {}°", significant(candidate.transmission_deg.worst, 3));
     let verdict = shortened(&words::verdict(record, candidate), 20);
     let colour = if candidate.accepted { palette::MUTED } else { palette::TARGET_TEXT };
-    let kind = candidate.linkage_type.name();
+    let kind = candidate.type_name();
     let first = [(rms.as_str(), 600, palette::INK), (kind, 400, palette::INK)];
     layout.words(canvas, frame, [first, [(&worst, 400, palette::MUTED), (&verdict, 400, colour)]]);
 }

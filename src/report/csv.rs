@@ -5,8 +5,7 @@ use super::body;
 use super::scene::first_position;
 use super::text::{cell, exact, push_exact};
 use super::words;
-use crate::mechanism::four_bar::transmission::angle_opposite;
-use crate::mechanism::{Complex, CouplerCurve, FourBar, Joints};
+use crate::mechanism::{Complex, CouplerCurve, FourBar, Joints, LoopJoints, OneLoop};
 use crate::record::{Candidate, Member, Record};
 use crate::task::{Defect, TaskKind};
 
@@ -26,14 +25,14 @@ const FIGURES: [Column<Candidate>; 19] = [
     ("to_curve_rms", |c| exact(c.error.to_curve.rms)),
     ("to_curve_max", |c| exact(c.error.to_curve.max)),
     ("objective", |c| exact(c.error.objective)),
-    ("type", |c| c.linkage_type.name().to_owned()),
+    ("type", |c| c.type_name().to_owned()),
     ("grashof_margin", |c| exact(c.grashof_margin)),
     ("transmission_min_deg", |c| exact(c.transmission_deg.min)),
     ("transmission_max_deg", |c| exact(c.transmission_deg.max)),
     ("transmission_worst_deg", |c| exact(c.transmission_deg.worst)),
     ("transmission_over", |c| words::over(c.transmission_deg.over).to_owned()),
     ("link_ratio", |c| exact(c.link_ratio)),
-    ("ground", |c| exact(c.linkage.ground())),
+    ("ground", |c| c.linkage.ground().map_or(String::new(), exact)),
 ];
 
 /// The figures that a candidate of a motion has beside those.
@@ -61,19 +60,38 @@ pub(super) const OF_FREE_RANGES: [Column<Candidate>; 5] = [
 ];
 
 /// The parameters of a linkage: coordinates, lengths and signs.
-pub(super) const PARAMETERS: [Column<FourBar, f64>; 11] = [
-    ("Ax", |l| l.crank_pivot().re),
-    ("Ay", |l| l.crank_pivot().im),
-    ("Bx", |l| l.follower_pivot().re),
-    ("By", |l| l.follower_pivot().im),
-    ("a", FourBar::crank),
-    ("b", FourBar::coupler),
-    ("c", FourBar::follower),
-    ("d", FourBar::crank_side),
-    ("e", FourBar::follower_side),
-    ("t1", |l| l.assembly().sign()),
-    ("t2", |l| l.side().sign()),
+pub(super) const PARAMETERS: [Parameter; 11] = [
+    ("Ax", |l| Some(l.crank_pivot().re)),
+    ("Ay", |l| Some(l.crank_pivot().im)),
+    ("Bx", |l| Some(l.second_pivot()?.re)),
+    ("By", |l| Some(l.second_pivot()?.im)),
+    ("a", |l| Some(l.crank())),
+    ("b", OneLoop::coupler),
+    ("c", |l| l.four_bar().map(FourBar::follower)),
+    ("d", |l| Some(l.crank_side())),
+    ("e", |l| l.four_bar().map(FourBar::follower_side)),
+    ("t1", |l| Some(l.assembly().sign())),
+    ("t2", |l| Some(l.four_bar()?.side().sign())),
 ];
+
+/// A parameter of a linkage: its name and its value; `None` of a kind that has no such parameter.
+pub(super) type Parameter = Column<OneLoop, Option<f64>>;
+
+/// The parameters that only linkages with a slider have.
+pub(super) const OF_SLIDERS: [Parameter; 6] = [
+    ("line_point_x", |l| Some(l.slider_crank()?.line_point().re)),
+    ("line_point_y", |l| Some(l.slider_crank()?.line_point().im)),
+    ("line_deg", |l| Some(l.slider_crank()?.parameters().line_deg)),
+    ("offset", |l| Some(l.inverted_slider_crank()?.offset())),
+    ("coupler_x", |l| l.four_bar().is_none().then(|| l.coupler_offset().re)),
+    ("coupler_y", |l| l.four_bar().is_none().then(|| l.coupler_offset().im)),
+];
+
+/// Returns the parameters that linkages of these kinds have: those of a slider only where one is among them.
+pub(super) fn parameters_of<'l>(linkages: impl IntoIterator<Item = &'l OneLoop>) -> Vec<Parameter> {
+    let sliders = linkages.into_iter().any(|linkage| linkage.four_bar().is_none());
+    PARAMETERS.into_iter().chain(OF_SLIDERS.into_iter().filter(|_| sliders)).collect()
+}
 
 /// The header row of [`curve_csv`]; the curve of a motion has a last column [`BODY_ANGLE`], that of a function
 /// [`OUTPUT_ANGLE`].
@@ -98,12 +116,13 @@ pub fn candidates_csv(record: &Record) -> String {
         TaskKind::Function => &OF_FUNCTION,
         TaskKind::Path => &[],
     };
-    let head = names(&FIGURES).chain(names(of_motion)).chain(names(&PARAMETERS)).chain(["defects", "unmet"]);
+    let of_linkage = parameters_of(record.candidates.iter().map(|c| &c.linkage));
+    let head = names(&FIGURES).chain(names(of_motion)).chain(names(&of_linkage)).chain(["defects", "unmet"]);
     let rows = record.candidates.iter().map(|c| {
         let defects: Vec<String> = c.defects.iter().map(defect).collect();
         let mut row = cells(&FIGURES, c);
         row.extend(cells(of_motion, c));
-        row.extend(parameters(&c.linkage));
+        row.extend(parameters(&of_linkage, &c.linkage));
         row.extend([defects.join(";"), cell(&words::unmet(record, c).join(";"))]);
         row
     });
@@ -119,19 +138,18 @@ const FRONT: [Column<Member>; 8] = [
     ("longest", |m| exact(m.figures.longest)),
     ("link_ratio", |m| exact(m.figures.link_ratio)),
     ("sensitivity", |m| exact(m.figures.sensitivity)),
-    ("kind", |_| FOUR_BAR.to_owned()),
+    ("kind", |m| m.candidate.linkage.kind().name().to_owned()),
 ];
-
-/// The kind of a four-bar linkage in a table of several kinds.
-const FOUR_BAR: &str = "four-bar";
 
 /// Returns one row for each member of a record's front: its figures, its kind and its parameters; only the header row
 /// without a front.
 pub fn front_csv(record: &Record) -> String {
-    let head = names(&FRONT).chain(names(&PARAMETERS));
-    let rows = record.front.iter().flat_map(|front| &front.members).map(|member| {
+    let members = || record.front.iter().flat_map(|front| &front.members);
+    let of_linkage = parameters_of(members().map(|member| &member.candidate.linkage));
+    let head = names(&FRONT).chain(names(&of_linkage));
+    let rows = members().map(|member| {
         let mut row = cells(&FRONT, member);
-        row.extend(parameters(&member.candidate.linkage));
+        row.extend(parameters(&of_linkage, &member.candidate.linkage));
         row
     });
     written(head, rows)
@@ -153,9 +171,9 @@ pub(super) fn figures(candidate: &Candidate, wanted: &[&str]) -> Vec<String> {
     found.map(|(_, cell)| cell(candidate)).collect()
 }
 
-/// Returns the cells of the parameters.
-pub(super) fn parameters(linkage: &FourBar) -> [String; 11] {
-    PARAMETERS.map(|(_, of)| exact(of(linkage)))
+/// Returns the cells of the parameters, empty where the kind has none.
+pub(super) fn parameters(columns: &[Parameter], linkage: &OneLoop) -> Vec<String> {
+    columns.iter().map(|(_, of)| of(linkage).map_or(String::new(), exact)).collect()
 }
 
 fn defect(defect: &Defect) -> String {
@@ -181,14 +199,12 @@ pub fn candidate_curve_csv(candidate: &Candidate) -> String {
         text.push_str(&format!(",{OUTPUT_ANGLE}"));
     }
     text.push('\n');
-    for row in curve(candidate) {
+    for (row, coupler) in curve(candidate) {
         for number in row {
             push_exact(&mut text, number);
             text.push(',');
         }
         if let Some(frame_deg) = candidate.frame_deg {
-            let [.., cx, cy, dx, dy, _, _, _] = row;
-            let coupler = Complex::new(dx - cx, dy - cy);
             push_exact(&mut text, body::generated(coupler, frame_deg).to_degrees());
             text.push(',');
         }
@@ -203,7 +219,8 @@ pub fn candidate_curve_csv(candidate: &Candidate) -> String {
     text
 }
 
-fn curve(candidate: &Candidate) -> Vec<[f64; CURVE_COLUMNS.len()]> {
+/// Returns the rows of the curve, each with the direction of the coupler.
+fn curve(candidate: &Candidate) -> Vec<([f64; CURVE_COLUMNS.len()], Complex)> {
     let linkage = &candidate.linkage;
     let (angle, assembly) = first_position(candidate);
     let mobility = linkage.mobility();
@@ -214,17 +231,17 @@ fn curve(candidate: &Candidate) -> Vec<[f64; CURVE_COLUMNS.len()]> {
     for i in 0..rows {
         let parameter_deg = i as f64 * 360.0 / rows as f64;
         let (angle, assembly) = circuit.position_at(parameter_deg.to_radians());
-        let Some(Joints { crank_pin: c, follower_pin: d, coupler_point: p }) =
-            linkage.position_with(angle, assembly).joints()
+        let Some(LoopJoints { joints: Joints { crank_pin: c, follower_pin: d, coupler_point: p }, coupler }) =
+            linkage.joints_with(angle, assembly)
         else {
             continue;
         };
-        let transmission = angle_opposite(linkage.diagonal(angle), linkage.coupler(), linkage.follower());
+        let transmission = linkage.transmission_at(angle);
         let crank_deg = if rocks { angle.to_degrees() } else { parameter_deg };
         let (t1, mu) = (assembly.sign(), transmission.to_degrees());
         let numbers = [crank_deg, t1, c.re, c.im, d.re, d.im, p.re, p.im, mu];
         if numbers.iter().all(|x| x.is_finite()) {
-            table.push(numbers);
+            table.push((numbers, coupler));
         }
     }
     table

@@ -298,7 +298,7 @@ fn rows(record: &Record, linkages: &[ExactLinkage], colour: Colour) -> String {
             (Right, "", &|(number, _)| plain(number.to_string())),
             (Right, "#", &|(_, l)| (rank(l), Ink::Strong)),
             (Left, "curve", &|(_, l)| plain(ability(l))),
-            (Left, "type", &|(_, l)| plain(l.linkage_type.name())),
+            (Left, "type", &|(_, l)| plain(l.type_name())),
             (Left, "t1", &|(_, l)| plain(signs(l))),
             (Left, "defects", &|(_, l)| plain(defects(l))),
             (Right, "transmission", &|(_, l)| {

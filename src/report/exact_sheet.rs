@@ -58,7 +58,7 @@ fn cell(canvas: &mut Canvas, record: &Record, linkage: &ExactLinkage, layout: &L
     };
     canvas.area(frame, &(outline(edge, weight) + r#" rx="4""#));
     let worst = format!("{}°", significant(linkage.transmission_worst_deg, 3));
-    let first = [(number.as_str(), 600, palette::INK), (linkage.linkage_type.name(), 400, palette::INK)];
+    let first = [(number.as_str(), 600, palette::INK), (linkage.type_name(), 400, palette::INK)];
     let second = [(ability(linkage), 400, colour), (worst.as_str(), 400, palette::MUTED)];
     layout.words(canvas, frame, [first, second]);
 }

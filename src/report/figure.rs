@@ -5,9 +5,10 @@ use super::canvas::{
     Canvas, ROUND_CORNERS, ROUND_ENDS, Spot, View, filled, font, haloed, outline, palette, px, stroke,
     weighted,
 };
+use super::guide::{Drawn, Guide};
 use super::labels::Beside;
 use super::parts::{UP, away, bars, letter, mark_joints, point_mark, stand, triangle};
-use super::scene::{Bounds, Scene, Target};
+use super::scene::{Bounds, Pose, Scene, Target};
 use super::words::joined;
 use crate::mechanism::{Complex, Joints};
 use std::collections::BTreeSet;
@@ -49,9 +50,13 @@ const MARKED: usize = 150;
 /// Draws the scene; labels avoid the marked places, and the drawn parts are marked for later labels.
 pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
     let joints = scene.pose.filter(|_| detail.linkage).map(|pose| pose.joints.map(|p| view.spot(p)));
+    let guide = scene.pose.filter(|_| detail.linkage).and_then(|pose| Sliding::of(scene, &pose));
     if let Some(joints) = joints {
         let [a, b, c, d, p] = joints;
-        ground(canvas, [a, b], detail);
+        ground(canvas, &[a, b][..if scene.has_two_pivots() { 2 } else { 1 }], detail);
+        if let Some(guide) = &guide {
+            guide.rail(canvas, view, detail.weight);
+        }
         pin_paths(canvas, scene, view, detail);
         mark_joints(&mut canvas.labels, joints);
         triangle(canvas, [c, d, p], palette::COUPLER, palette::BAR_EDGE, detail.weight);
@@ -60,14 +65,21 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Deta
     let marks = Marks::new(scene, view, detail);
     whiskers(canvas, &marks, detail);
     if let Some([a, b, c, d, _]) = joints {
-        bars(canvas, [a, b, c, d], palette::BAR_EDGE, detail.weight);
+        match &guide {
+            None => bars(canvas, [a, b, c, d], palette::BAR_EDGE, detail.weight),
+            Some(guide) => {
+                // The crank alone is a bar.
+                bars(canvas, [a, a, c, a], palette::BAR_EDGE, detail.weight);
+                guide.block(canvas, view, detail.weight);
+            }
+        }
     }
     bodies::draw(canvas, scene, view, detail.target_weight);
     targets(canvas, &marks, detail);
     if let Some(joints) = joints {
         point_mark(canvas, joints[4], detail.weight);
         if detail.letters {
-            letters(canvas, joints);
+            letters(canvas, joints, scene.has_two_pivots());
         }
     }
     if detail.numbers {
@@ -107,10 +119,12 @@ fn strands(points: &[Complex], clip: Option<&Bounds>) -> (Vec<Vec<Complex>>, boo
 }
 
 /// Draws the line A-B, and under each fixed pivot a hatched stand.
-fn ground(canvas: &mut Canvas, pivots: [Spot; 2], detail: Detail) {
+fn ground(canvas: &mut Canvas, pivots: &[Spot], detail: Detail) {
     let faint = stroke(palette::MUTED, weighted(detail.weight)) + r#" stroke-dasharray="2 5""#;
-    canvas.line(pivots[0], pivots[1], &faint);
-    pivots.into_iter().for_each(|pivot| stand(canvas, pivot, detail.weight));
+    if let [a, b] = pivots {
+        canvas.line(*a, *b, &faint);
+    }
+    pivots.iter().for_each(|pivot| stand(canvas, *pivot, detail.weight));
 }
 
 /// Draws the paths of C and D.
@@ -205,8 +219,36 @@ fn targets(canvas: &mut Canvas, marks: &Marks, detail: Detail) {
     }
 }
 
-/// Draws the letters A B C D P.
-fn letters(canvas: &mut Canvas, [a, b, c, d, p]: [Spot; 5]) {
+/// The slider of a scene at its position.
+struct Sliding {
+    guide: Guide,
+    at: Drawn,
+}
+
+impl Sliding {
+    /// Returns the slider of a scene; `None` of a four-bar.
+    fn of(scene: &Scene, pose: &Pose) -> Option<Sliding> {
+        let linkage = scene.linkage.as_ref()?;
+        let guide = Guide::of(linkage.mechanism())?;
+        let [a, b, c, d, p] = pose.joints;
+        let second = scene.has_two_pivots().then_some(b);
+        let joints = std::iter::once(a).chain(second).chain([c, d, p]).collect();
+        let length = pose.coupler.norm();
+        let coupler = (length > 0.0).then(|| pose.coupler / length);
+        Some(Sliding { guide, at: Drawn { joints, coupler } })
+    }
+
+    fn rail(&self, canvas: &mut Canvas, view: &View, weight: f64) {
+        self.guide.rail(canvas, view, &self.at, weight);
+    }
+
+    fn block(&self, canvas: &mut Canvas, view: &View, weight: f64) {
+        self.guide.block(canvas, view, &self.at, weight);
+    }
+}
+
+/// Draws the letters A B C D P, without B of a linkage that has one pivot.
+fn letters(canvas: &mut Canvas, [a, b, c, d, p]: [Spot; 5], two_pivots: bool) {
     let joints = [
         ("P", p, away(p, &[c, d])),
         ("C", c, away(c, &[a, d, p])),
@@ -214,7 +256,7 @@ fn letters(canvas: &mut Canvas, [a, b, c, d, p]: [Spot; 5]) {
         ("A", a, away(a, &[c]) + UP),
         ("B", b, away(b, &[d]) + UP),
     ];
-    for (name, joint, towards) in joints {
+    for (name, joint, towards) in joints.into_iter().take(if two_pivots { 5 } else { 4 }) {
         letter(canvas, name, joint, towards);
     }
 }

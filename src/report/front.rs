@@ -118,7 +118,7 @@ fn closest(record: &Record) -> Option<String> {
     Some(format!(
         "Closest candidate of the search: rms {}{unit}, {}, worst transmission angle {}°.{others}",
         significant(best.error.rms, 4),
-        best.linkage_type.name(),
+        best.type_name(),
         brief(best.transmission_deg.worst, 3),
     ))
 }

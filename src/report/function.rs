@@ -48,7 +48,7 @@ pub(super) fn pairs(task: &TaskSpec, candidate: &Candidate) -> Vec<GeneratedPair
 
 /// Returns the output at a crank angle (degrees) in the sense in which outputs count, within half a turn.
 fn output(candidate: &Candidate, crank_deg: f64, t1: crate::mechanism::AssemblyMode) -> Option<f64> {
-    let joints = candidate.linkage.position_with(crank_deg.to_radians(), t1).joints()?;
+    let joints = candidate.linkage.joints_with(crank_deg.to_radians(), t1)?.joints;
     let sign = if candidate.sense? == Sense::Opposite { -1.0 } else { 1.0 };
     Some(sign * super::body::output_deg(candidate, joints.follower_pin)?)
 }

@@ -1,19 +1,18 @@
 //! A drawing of a linkage of any kind at one position, with other positions drawn faintly and the path of its traced point.
 
-use super::canvas::{Canvas, ROUND_CORNERS, ROUND_ENDS, Spot, Vec2, View, filled, outline, palette, stroke};
+use super::canvas::{Canvas, ROUND_ENDS, Spot, filled, outline, palette, stroke};
+use super::guide::{Drawn, Guide};
 use super::mechanism_text::{dimensions, in_words};
 use super::parts::{away, letter, plate, point_mark, stand};
 use super::scene::Bounds;
 use super::sheet::{FULL, Sheet, page};
 use super::text::{plural, significant};
 use crate::mechanism::analysis::Status;
-use crate::mechanism::analysis::driven::{CYCLE_SAMPLES, MechanismAnalysis, slider_range};
-use crate::mechanism::{Complex, Link, Linkage, Mechanism, MechanismPose, Slide, dot};
+use crate::mechanism::analysis::driven::{CYCLE_SAMPLES, MechanismAnalysis};
+use crate::mechanism::{Complex, Link, Linkage, Mechanism, MechanismPose};
 
 /// The largest number of positions that are drawn faintly besides the first.
 const GHOSTS: usize = 5;
-/// The part of the slider's range that its rail reaches beyond it at either end.
-const BEYOND: f64 = 0.12;
 
 /// Returns the page of an analysis: one self-contained SVG.
 pub fn mechanism_svg(analysis: &MechanismAnalysis, linkage: &Linkage) -> String {
@@ -39,11 +38,11 @@ pub fn mechanism_svg(analysis: &MechanismAnalysis, linkage: &Linkage) -> String 
     for ghost in poses.iter().step_by(step).skip(1) {
         body.raw(r#"<g opacity="0.28">"#);
         if let Some(guide) = guide.as_ref().filter(|guide| guide.moves()) {
-            guide.rail(body, &view, ghost);
+            guide.rail(body, &view, ghost, 1.0);
         }
         links(body, &moving, &view.spots(&ghost.joints));
         if let Some(guide) = &guide {
-            guide.block(body, &view, ghost);
+            guide.block(body, &view, ghost, 1.0);
         }
         body.raw("</g>");
     }
@@ -55,11 +54,11 @@ pub fn mechanism_svg(analysis: &MechanismAnalysis, linkage: &Linkage) -> String 
         let spots = view.spots(&first.joints);
         spots[..mechanism.pivots()].iter().for_each(|spot| stand(body, *spot, 0.9));
         if let Some(guide) = &guide {
-            guide.rail(body, &view, first);
+            guide.rail(body, &view, first, 1.0);
         }
         links(body, &moving, &spots);
         if let Some(guide) = &guide {
-            guide.block(body, &view, first);
+            guide.block(body, &view, first, 1.0);
         }
         let pin = filled(palette::PAPER, palette::INK, 1.4);
         let foot = guide.as_ref().and_then(Guide::foot);
@@ -90,13 +89,6 @@ pub fn mechanism_svg(analysis: &MechanismAnalysis, linkage: &Linkage) -> String 
     page(&analysis.name, input, &lines, vec![sheet])
 }
 
-/// A position in which every joint is known.
-struct Drawn {
-    joints: Vec<Complex>,
-    /// The unit direction of the coupler, of kinds that have one.
-    coupler: Option<Complex>,
-}
-
 /// Returns the position at a crank angle; `None` if the mechanism does not close.
 fn pose(mechanism: &dyn Mechanism, crank_deg: f64) -> Option<Drawn> {
     let MechanismPose { joints, coupler, .. } = mechanism.pose_at(crank_deg.to_radians());
@@ -116,89 +108,5 @@ fn links(canvas: &mut Canvas, links: &[Link], spots: &[Spot]) {
             }
             corners => plate(canvas, corners, palette::COUPLER, palette::BAR_EDGE, "2"),
         }
-    }
-}
-
-/// The guide of a slider with the range that its block uses: a line for the rail or the rod, a rectangle for the block.
-struct Guide {
-    slide: Slide,
-    /// The least and the greatest place along the line, with room beyond.
-    reach: [f64; 2],
-}
-
-impl Guide {
-    fn of(mechanism: &dyn Mechanism) -> Option<Guide> {
-        let slide = mechanism.slide()?;
-        let [low, high] = slider_range(mechanism)?;
-        let beyond = BEYOND * (high - low);
-        let reach = match slide {
-            Slide::Rail { .. } => [low - beyond, high + beyond],
-            // A rod goes from its joint to the farthest place of the block, whichever way that lies.
-            Slide::Rod { .. } if high > 0.0 => [0.0, high + beyond],
-            Slide::Rod { .. } => [low - beyond, 0.0],
-        };
-        Some(Guide { slide, reach })
-    }
-
-    /// Returns whether the line moves with a link.
-    fn moves(&self) -> bool {
-        matches!(self.slide, Slide::Rod { .. })
-    }
-
-    /// Returns the index of the foot of the perpendicular on a rod, which is no pin.
-    fn foot(&self) -> Option<usize> {
-        match self.slide {
-            Slide::Rod { foot, .. } => Some(foot),
-            Slide::Rail { .. } => None,
-        }
-    }
-
-    /// Returns a point of the line, from which places count, and the line's direction.
-    fn line(&self, pose: &Drawn) -> (Complex, Complex) {
-        match self.slide {
-            Slide::Rail { through, direction, .. } => (through, direction),
-            Slide::Rod { from, .. } => (pose.joints[from], pose.coupler.unwrap_or(Complex::new(1.0, 0.0))),
-        }
-    }
-
-    /// Returns the two ends of the drawn line.
-    fn ends(&self, pose: &Drawn) -> [Complex; 2] {
-        let (origin, direction) = self.line(pose);
-        self.reach.map(|place| origin + direction * place)
-    }
-
-    fn rail(&self, canvas: &mut Canvas, view: &View, pose: &Drawn) {
-        let [from, to] = self.ends(pose).map(|end| view.spot(end));
-        match self.slide {
-            Slide::Rail { .. } => canvas.line(from, to, &(stroke(palette::BAR_EDGE, 2) + ROUND_ENDS)),
-            Slide::Rod { .. } => {
-                for (colour, width) in [(palette::BAR_EDGE, 5.0), (palette::BAR, 2.8)] {
-                    canvas.line(from, to, &(stroke(colour, width) + ROUND_ENDS));
-                }
-            }
-        }
-    }
-
-    /// Draws the block as a rectangle along the line, and the arm that joins it to its pivot.
-    fn block(&self, canvas: &mut Canvas, view: &View, pose: &Drawn) {
-        const HALF: [f64; 2] = [11.0, 6.5];
-        let (_, direction) = self.line(pose);
-        let at = match self.slide {
-            Slide::Rail { block, .. } => pose.joints[block],
-            Slide::Rod { foot, pivot, .. } => {
-                let arm = pose.joints[foot] - pose.joints[pivot];
-                if dot(arm, arm) > 0.0 {
-                    let bar = stroke(palette::BAR_EDGE, 4) + ROUND_ENDS;
-                    canvas.line(view.spot(pose.joints[pivot]), view.spot(pose.joints[foot]), &bar);
-                }
-                pose.joints[foot]
-            }
-        };
-        let centre = view.spot(at);
-        // Pixels have y down.
-        let (along, across) = (Vec2::new(direction.re, -direction.im), Vec2::new(direction.im, direction.re));
-        let corner = |x: f64, y: f64| centre + along * (x * HALF[0]) + across * (y * HALF[1]);
-        let corners = [corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0), corner(1.0, -1.0)];
-        canvas.path(&corners, true, &(filled(palette::PAPER, palette::BAR_EDGE, 2) + ROUND_CORNERS));
     }
 }

@@ -37,6 +37,7 @@
 //! | [`exact_sheet`] | small drawings of every real linkage through nine points, side by side |
 //! | [`export`] | export of linkages to files for building them: drawings in true millimetres, cutting and printing files, lists |
 //! | [`figure`] | the drawing of a scene: curve, linkage, target and labels |
+//! | [`guide`] | the guide of a slider in drawings: the rail with its block, or the rod that slides through a block at a pivot |
 //! | [`front`] | the front as text: a row for each member |
 //! | [`function`] | the function of a candidate: its graph beside the one that is wanted, the error below, and the pairs |
 //! | [`grid`] | a table of text with aligned columns, and the colours of a terminal |
@@ -81,6 +82,7 @@ mod figure;
 pub mod front;
 mod function;
 pub mod grid;
+mod guide;
 pub mod html;
 mod labels;
 pub mod mechanism_sheet;

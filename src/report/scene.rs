@@ -1,7 +1,9 @@
 //! The scene of a candidate's drawing: target points, the circuits used, and one position of the linkage.
 
 use super::{body, function};
-use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, Joints, MAX_MAGNITUDE, point};
+use crate::mechanism::{
+    AssemblyMode, Complex, CouplerCurve, Joints, LoopJoints, MAX_MAGNITUDE, OneLoop, point,
+};
 use crate::record::{Candidate, Record};
 use crate::task::spec::TaskSpec;
 use std::f64::consts::{PI, TAU};
@@ -26,14 +28,16 @@ pub(super) struct Target {
 pub(super) struct Pose {
     /// The index of the target point of this position; `None` if the loop closes at no target point.
     pub(super) target: Option<usize>,
-    /// A, B, C, D, P.
+    /// A, B, C, D, P; B of a slider-crank, which has no second pivot, is D.
     pub(super) joints: [Complex; 5],
+    /// The direction of the coupler from C.
+    pub(super) coupler: Complex,
 }
 
 /// A candidate, ready to be drawn. Without a candidate, the target alone.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scene {
-    pub(super) linkage: Option<FourBar>,
+    pub(super) linkage: Option<OneLoop>,
     pub(super) targets: Vec<Target>,
     /// The joints along each circuit used, the first point's circuit first.
     pub(super) circuits: Vec<Vec<Joints>>,
@@ -62,19 +66,27 @@ impl Scene {
     /// each circuit. The body of a motion lies at `frame_deg` from the direction C -> D.
     pub(super) fn of(
         record: &Record,
-        linkage: &FourBar,
+        linkage: &OneLoop,
         positions: &[(f64, AssemblyMode)],
         frame_deg: Option<f64>,
         samples: usize,
     ) -> Self {
         let reach = |j: usize| {
             let (angle, assembly) = *positions.get(j)?;
-            linkage.position_with(angle, assembly).joints()
+            linkage.joints_with(angle, assembly)
         };
         let circuits = circuits_of(linkage, positions, samples);
-        let pose = legible_pose(linkage, positions)
-            .or_else(|| Some(Pose { target: None, joints: all_joints(linkage, circuits.first()?.first()?) }));
+        let pose = legible_pose(linkage, positions).or_else(|| {
+            let at = circuits.first()?.first()?;
+            let coupler = at.follower_pin - at.crank_pin;
+            Some(Pose { target: None, joints: all_joints(linkage, at), coupler })
+        });
         Scene { linkage: Some(*linkage), targets: targets(record, frame_deg, &reach), circuits, pose }
+    }
+
+    /// Returns whether the linkage has a second fixed pivot.
+    pub(super) fn has_two_pivots(&self) -> bool {
+        self.linkage.as_ref().is_none_or(|linkage| linkage.second_pivot().is_some())
     }
 
     /// Returns the box of the target points and the coupler points that they are compared with.
@@ -92,7 +104,7 @@ impl Scene {
     /// Returns the box of everything, over the whole motion.
     pub(super) fn bounds(&self) -> Bounds {
         let mut bounds = self.curve_bounds();
-        let pivots = self.linkage.iter().flat_map(|l| [l.crank_pivot(), l.follower_pivot()]);
+        let pivots = self.linkage.iter().flat_map(OneLoop::pivots);
         let pins = self.circuits.iter().flatten().flat_map(|joints| [joints.crank_pin, joints.follower_pin]);
         pivots.chain(pins).for_each(|p| bounds.hold(p));
         bounds
@@ -104,25 +116,21 @@ impl Scene {
 fn targets(
     record: &Record,
     frame_deg: Option<f64>,
-    reached: &dyn Fn(usize) -> Option<Joints>,
+    reached: &dyn Fn(usize) -> Option<LoopJoints>,
 ) -> Vec<Target> {
     let TaskSpec { points, body, .. } = &record.problem.resolved.task;
     let usable = points.iter().enumerate().filter(|(_, p)| p.iter().all(|x| x.abs() <= MAX_MAGNITUDE));
     let target = |(index, p): (usize, &[f64; 2])| {
-        let joints = reached(index);
+        let at = reached(index);
         let wanted = body.as_ref().and_then(|body| *body.angle_deg.get(index)?);
-        let generated = |joints: Joints| {
-            Some(body::generated(
-                joints.follower_pin - joints.crank_pin,
-                frame_deg.filter(|_| wanted.is_some())?,
-            ))
-        };
+        let generated =
+            |at: LoopJoints| Some(body::generated(at.coupler, frame_deg.filter(|_| wanted.is_some())?));
         Target {
             index,
             at: point(*p),
-            reached: joints.map(|joints| joints.coupler_point),
+            reached: at.map(|at| at.joints.coupler_point),
             angle: wanted.map(f64::to_radians),
-            reached_angle: joints.and_then(generated),
+            reached_angle: at.and_then(generated),
         }
     };
     usable.map(target).collect()
@@ -131,8 +139,9 @@ fn targets(
 /// Returns the places of the follower's pin at the outputs that are wanted of a function, each with its place at the one
 /// generated; none for another task.
 fn follower_pins(record: &Record, candidate: &Candidate) -> Vec<Target> {
-    let linkage = &candidate.linkage;
-    let (Some(offset), Some(sense)) = (candidate.output_offset_deg, candidate.sense) else {
+    let (Some(linkage), Some(offset), Some(sense)) =
+        (candidate.linkage.four_bar(), candidate.output_offset_deg, candidate.sense)
+    else {
         return Vec::new();
     };
     let pairs = function::pairs(&record.problem.resolved.task, candidate);
@@ -164,21 +173,22 @@ pub(super) fn first_position(candidate: &Candidate) -> (f64, AssemblyMode) {
     first_of(&candidate.linkage, &positions(candidate))
 }
 
-fn first_of(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> (f64, AssemblyMode) {
+fn first_of(linkage: &OneLoop, positions: &[(f64, AssemblyMode)]) -> (f64, AssemblyMode) {
     let first = positions.first().copied().filter(|(angle, _)| angle.is_finite());
     first.unwrap_or_else(|| middle_position(linkage))
 }
 
 /// Returns a position in the middle of the input's range; if the loop does not determine the follower there (C on B, as
 /// in a rhombus at one crank angle), the nearest of several others at which the linkage can be assembled.
-pub(crate) fn middle_position(linkage: &FourBar) -> (f64, AssemblyMode) {
+pub(crate) fn middle_position(linkage: impl Into<OneLoop>) -> (f64, AssemblyMode) {
     /// Offsets from the middle, as fractions of a half turn or of half the arc.
     const ASIDE: [f64; 9] = [0.0, 1.0 / 3.0, -1.0 / 3.0, 0.5, -0.5, 2.0 / 3.0, -2.0 / 3.0, 0.1, -0.1];
+    let linkage = linkage.into();
     let arc = linkage.mobility().arc(crate::mechanism::Circuit { index: 0 });
     let (middle, half) = arc.map_or((0.0, PI), |arc| (arc.middle, arc.half_width));
     let assembly = linkage.assembly();
     let angles = ASIDE.map(|part| middle + part * half);
-    let joined = angles.into_iter().find(|angle| linkage.position_with(*angle, assembly).joints().is_some());
+    let joined = angles.into_iter().find(|angle| linkage.joints_with(*angle, assembly).is_some());
     (joined.unwrap_or(middle), assembly)
 }
 
@@ -187,17 +197,18 @@ pub(super) fn circuits(candidate: &Candidate, samples: usize) -> Vec<Vec<Joints>
     circuits_of(&candidate.linkage, &positions(candidate), samples)
 }
 
-fn circuits_of(linkage: &FourBar, positions: &[(f64, AssemblyMode)], samples: usize) -> Vec<Vec<Joints>> {
+fn circuits_of(linkage: &OneLoop, positions: &[(f64, AssemblyMode)], samples: usize) -> Vec<Vec<Joints>> {
     let all = std::iter::once(first_of(linkage, positions)).chain(positions.iter().copied());
     circuits_through(linkage, all, samples)
 }
 
 /// Returns the joints along every circuit that contains one of the positions (crank angle in radians, assembly).
 pub(crate) fn circuits_through(
-    linkage: &FourBar,
+    linkage: impl Into<OneLoop>,
     positions: impl IntoIterator<Item = (f64, AssemblyMode)>,
     samples: usize,
 ) -> Vec<Vec<Joints>> {
+    let linkage = linkage.into();
     let mobility = linkage.mobility();
     let mut seen = Vec::new();
     let mut circuits = Vec::new();
@@ -210,11 +221,11 @@ pub(crate) fn circuits_through(
             continue;
         }
         seen.push(key);
-        let curve = CouplerCurve::through(linkage, angle, assembly, 8);
+        let curve = CouplerCurve::through(&linkage, angle, assembly, 8);
         let joints: Vec<Joints> = (0..samples)
             .filter_map(|i| {
                 let (angle, assembly) = curve.position_at(TAU * i as f64 / samples as f64);
-                linkage.position_with(angle, assembly).joints()
+                linkage.joints_with(angle, assembly).map(|at| at.joints)
             })
             .collect();
         if !joints.is_empty() {
@@ -226,15 +237,18 @@ pub(crate) fn circuits_through(
 
 /// Returns the position at the first target point, or, if that is hard to read (joints close together), the one at
 /// which the closest two joints are farthest apart.
-fn legible_pose(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> Option<Pose> {
+fn legible_pose(linkage: &OneLoop, positions: &[(f64, AssemblyMode)]) -> Option<Pose> {
     /// The fraction of the best spacing down to which the first point is kept.
     const GOOD_ENOUGH: f64 = 0.6;
     let poses: Vec<(Pose, f64)> = positions
         .iter()
         .enumerate()
         .filter_map(|(j, (angle, assembly))| {
-            let joints = all_joints(linkage, &linkage.position_with(*angle, *assembly).joints()?);
-            Some((Pose { target: Some(j), joints }, closest(&joints)))
+            let at = linkage.joints_with(*angle, *assembly)?;
+            let joints = all_joints(linkage, &at.joints);
+            let [a, _, c, d, p] = joints;
+            let apart = if linkage.four_bar().is_some() { closest(&joints) } else { closest(&[a, c, d, p]) };
+            Some((Pose { target: Some(j), joints, coupler: at.coupler }, apart))
         })
         .collect();
     // The first of equal ones.
@@ -249,10 +263,12 @@ pub(super) fn closest(all: &[Complex]) -> f64 {
     pairs.map(|(i, j)| (all[i] - all[j]).norm()).fold(f64::INFINITY, f64::min)
 }
 
-/// Returns A, B, C, D, P of a linkage at a position.
-pub(super) fn all_joints(linkage: &FourBar, joints: &Joints) -> [Complex; 5] {
+/// Returns A, B, C, D, P of a linkage at a position; for B of a slider-crank D.
+pub(super) fn all_joints(linkage: impl Into<OneLoop>, joints: &Joints) -> [Complex; 5] {
     let Joints { crank_pin, follower_pin, coupler_point } = *joints;
-    [linkage.crank_pivot(), linkage.follower_pivot(), crank_pin, follower_pin, coupler_point]
+    let linkage = linkage.into();
+    let second = linkage.second_pivot().unwrap_or(follower_pin);
+    [linkage.crank_pivot(), second, crank_pin, follower_pin, coupler_point]
 }
 
 /// A bounding box, which grows with the points put into it.

@@ -3,7 +3,6 @@
 use super::canvas::{
     Anchor, Area, Canvas, Frame, ROUND_ENDS, Spot, Vec2, View, bold, font, outline, palette, px, stroke,
 };
-use super::csv::PARAMETERS;
 use super::scene::Bounds;
 use super::text::{brief, shortened, text_width};
 use super::words;
@@ -136,7 +135,8 @@ fn put_row(canvas: &mut Canvas, row: Vec<Sheet>, y: f64) -> f64 {
 
 /// Returns the dimensions, such as `A (0, 0), B (4, 1), a 2, b 5 ..`.
 pub(super) fn dimensions(linkage: &FourBar) -> String {
-    let [ax, ay, bx, by, a, b, c, d, e, ..] = PARAMETERS.map(|(_, of)| brief(of(linkage), 6));
+    let [ax, ay, bx, by, a, b, c, d, e] =
+        linkage.natural_coordinates().numbers().map(|number| brief(number, 6));
     let [t1, t2] = [linkage.assembly().sign(), linkage.side().sign()].map(sign);
     format!("A ({ax}, {ay}), B ({bx}, {by}), a {a}, b {b}, c {c}, d {d}, e {e}, t1 {t1}, t2 {t2}")
 }

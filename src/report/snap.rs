@@ -99,7 +99,8 @@ fn dimensions(
         row(length.key(), length.of(from), value, stock, note);
     }
     for (name, of) in &PARAMETERS[..4] {
-        row(name, of(from), of(to), false, "");
+        let [from, to] = [from, to].map(|linkage| of(linkage).unwrap_or(f64::NAN));
+        row(name, from, to, false, "");
     }
     let [was, is] = [from, to].map(|linkage| linkage.ground_angle().to_degrees());
     row("ground angle", was, is, false, "");

@@ -201,7 +201,7 @@ fn figures(record: &Record, candidate: &Candidate) -> [String; 2] {
         ),
         format!(
             "{}, worst transmission angle {}° ({}), link ratio {}, {}",
-            candidate.linkage_type,
+            candidate.type_name(),
             significant(transmission.worst, 3),
             match transmission.over {
                 TransmissionOver::Cycle => "full turn",

@@ -1,13 +1,13 @@
 //! The output of `synth`: the candidates of a run, or one line for each file of a batch.
 
 use super::beside;
-use super::csv::parameters;
 use super::grid::Align::{Left, Right};
 use super::grid::{Cell, Colour, Column, Grid, Ink, plain, verdict};
-use super::text::{COLUMNS, NO_NUMBER, brief, clean, grouped, indented, shortened, significant, wrapped};
+use super::text::{
+    COLUMNS, NO_NUMBER, brief, clean, exact, grouped, indented, shortened, significant, wrapped,
+};
 use super::{price, words};
-use crate::mechanism::FourBar;
-use crate::mechanism::Unit;
+use crate::mechanism::{OneLoop, Unit};
 use crate::record::{AngleErrorRecord, Candidate, ErrorRecord, Record};
 use crate::task::spec::{Measure, TaskSpec};
 use crate::task::{Defect, Sense, TaskKind};
@@ -125,7 +125,7 @@ fn rows(record: &Record, colour: Colour) -> String {
             second,
             third,
             (Right, "to curve", &|c| plain(significant(c.error.to_curve.rms, 4))),
-            (Left, "type", &|c| plain(c.linkage_type.name())),
+            (Left, "type", &|c| plain(c.type_name())),
             (Right, "transmission", &|c| plain(transmission(c))),
             (Right, "ratio", &|c| plain(significant(c.link_ratio, 3))),
             (Left, "verdict", &|c| verdict(shortened(&words::verdict(record, c), 24), c.accepted)),
@@ -159,7 +159,7 @@ fn rows_of_motion(record: &Record, colour: Colour) -> String {
             (Right, "at", &|c| plain(worst_at(record, c).to_string())),
             (Right, "angle", &|c| angle(c, |angle| angle.rms_deg)),
             (Right, "max", &|c| angle(c, |angle| angle.max_deg)),
-            (Left, "type", &|c| plain(c.linkage_type.name())),
+            (Left, "type", &|c| plain(c.type_name())),
             (Right, "transm.", &|c| plain(transmission(c))),
             (Right, "ratio", &|c| plain(significant(c.link_ratio, 3))),
             (Left, "verdict", &|c| verdict(shortened(&words::verdict(record, c), 18), c.accepted)),
@@ -192,7 +192,7 @@ fn rows_of_function(record: &Record, colour: Colour) -> String {
             (Right, "at", &|c| plain(worst_at(record, c).to_string())),
             (Right, "crank", &|c| from(c.input_offset_deg, c.input_range_deg)),
             (Right, "follower", &|c| from(c.output_offset_deg, c.output_range_deg)),
-            (Left, "type", &|c| plain(c.linkage_type.name())),
+            (Left, "type", &|c| plain(c.type_name())),
             (Right, "transm.", &|c| plain(transmission(c))),
             (Right, "ratio", &|c| plain(significant(c.link_ratio, 3))),
             (Left, "verdict", &|c| verdict(shortened(&words::verdict(record, c), 18), c.accepted)),
@@ -333,13 +333,37 @@ pub(super) fn motion(candidate: &Candidate) -> Option<String> {
 }
 
 /// Returns the linkage as an inline table of TOML, to the last digit.
-fn linkage_toml(linkage: &FourBar) -> String {
-    let [ax, ay, bx, by, a, b, c, d, e, t1, t2] = parameters(linkage);
+fn linkage_toml(linkage: &OneLoop) -> String {
     // A tilde is a space at which no line is broken.
-    let parts = format!(
-        "A~=~[{ax},~{ay}], B~=~[{bx},~{by}], a~=~{a}, b~=~{b}, c~=~{c}, d~=~{d}, e~=~{e}, t1~=~{t1}, t2~=~{t2}~}}"
-    );
-    wrapped("    linkage = { ", "      ", &parts, COLUMNS).replace('~', " ")
+    let pair = |[x, y]: [f64; 2]| format!("[{},~{}]", exact(x), exact(y));
+    let t1 = i64::from(linkage.assembly());
+    let (table, parts) = match linkage {
+        OneLoop::FourBar(linkage) => {
+            let p = linkage.natural_coordinates();
+            let lengths = [p.crank, p.coupler, p.follower, p.crank_side, p.follower_side].map(exact);
+            let ([a, b, c, d, e], t2) = (lengths, i64::from(p.side));
+            let (pivot, other) = (pair(p.crank_pivot), pair(p.follower_pivot));
+            let lengths = format!("a~=~{a}, b~=~{b}, c~=~{c}, d~=~{d}, e~=~{e}");
+            ("linkage", format!("A~=~{pivot}, B~=~{other}, {lengths}, t1~=~{t1}, t2~=~{t2}~}}"))
+        }
+        OneLoop::SliderCrank(linkage) => {
+            let p = linkage.parameters();
+            let [a, b, deg, x, y] = [p.crank, p.coupler, p.line_deg, p.coupler_x, p.coupler_y].map(exact);
+            let (pivot, line) = (pair(p.crank_pivot), pair(p.line_point));
+            let line = format!("line_point~=~{line}, line_deg~=~{deg}");
+            let p = format!("coupler_x~=~{x}, coupler_y~=~{y}");
+            ("slider_crank", format!("A~=~{pivot}, a~=~{a}, b~=~{b}, {line}, {p}, t1~=~{t1}~}}"))
+        }
+        OneLoop::InvertedSliderCrank(linkage) => {
+            let p = linkage.parameters();
+            let [a, offset, x, y] = [p.crank, p.offset, p.coupler_x, p.coupler_y].map(exact);
+            let (pivot, block) = (pair(p.crank_pivot), pair(p.block_pivot));
+            let p = format!("coupler_x~=~{x}, coupler_y~=~{y}");
+            let parts = format!("A~=~{pivot}, B~=~{block}, a~=~{a}, offset~=~{offset}, {p}, t1~=~{t1}~}}");
+            ("inverted_slider_crank", parts)
+        }
+    };
+    wrapped(&format!("    {table} = {{ "), "      ", &parts, COLUMNS).replace('~', " ")
 }
 
 /// Returns method, seed, cost and the reason why the search ended, on one line.

@@ -267,7 +267,7 @@ impl Inquiry<'_> {
             let mut base = self.problem.spec().clone();
             for demand in demands {
                 if *demand == Demand::TYPE {
-                    base.require.types.push(linkage_type);
+                    base.require.types.extend(linkage_type);
                     base.require.types.sort_unstable();
                     base.require.types.dedup();
                 } else if demand.is_policy() {

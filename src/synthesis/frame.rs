@@ -252,7 +252,7 @@ fn carried(
     numbering: Numbering,
     to_curve: Option<CurveErrorRecord>,
 ) -> Option<Candidate> {
-    let own = candidate.linkage.natural_coordinates();
+    let own = candidate.linkage.four_bar()?.natural_coordinates();
     let linkage = FourBar::new(NaturalCoordinates {
         crank_pivot: by.point(own.crank_pivot),
         follower_pivot: by.point(own.follower_pivot),
@@ -467,7 +467,7 @@ mod tests {
             );
             assert_eq!((there.accepted, there.defects.len()), (own.accepted, own.defects.len()));
             let back = frame.back(&problem, &there).expect("it closes");
-            let numbers = |c: &Candidate| c.linkage.natural_coordinates().numbers();
+            let numbers = |c: &Candidate| c.linkage.numbers();
             assert!(numbers(&own).iter().zip(numbers(&back)).all(|(x, y)| near(*x, y)));
             let turns = (own.crank_deg[0] - back.crank_deg[0]) / 360.0;
             let whole = 360.0 * turns.round();

@@ -13,6 +13,7 @@ use super::multistart::{Fitted, by_merit, fit_and_judge};
 use crate::judge::error::structural_error;
 use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
 use crate::judge::warm::start_at;
+use crate::mechanism::FourBar;
 use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
 use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, Goal, solve};
 use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
@@ -286,7 +287,7 @@ fn optima<'c>(problem: &Problem, all: &[&'c Candidate]) -> Vec<&'c Candidate> {
             near(deviation, *other)
                 && near(candidate.link_ratio, c.link_ratio)
                 && candidate.linkage.assembly() == c.linkage.assembly()
-                && candidate.linkage.side() == c.linkage.side()
+                && candidate.linkage.four_bar().map(FourBar::side) == c.linkage.four_bar().map(FourBar::side)
         });
         if !same {
             kept.push((deviation, candidate));

@@ -92,7 +92,8 @@ fn is_near(one: &FourBar, other: &FourBar) -> bool {
 
 /// Whether a linkage is the one that is listed, or another mechanism of its class.
 fn is_of_class(listed: &ExactLinkage, linkage: &FourBar) -> bool {
-    let all = std::iter::once(&listed.linkage).chain(listed.others.iter().map(|form| &form.linkage));
+    let all = std::iter::once(listed.linkage.four_bar().expect("a four-bar"))
+        .chain(listed.others.iter().map(|form| form.linkage.four_bar().expect("a four-bar")));
     all.into_iter().any(|form| is_near(form, linkage))
 }
 
@@ -116,7 +117,7 @@ fn positions_of_random_linkages_give_all_linkages_the_generating_one_among_them(
             let size = record.problem.resolved.task.points.iter().map(|p| (point(*p) - rows[0].0).norm());
             let size = size.fold(0.0, f64::max);
             for listed in &exact.linkages {
-                passes(&listed.linkage, listed, &rows, size);
+                passes(listed.linkage.four_bar().expect("a four-bar"), listed, &rows, size);
                 checked += 1;
             }
             if index == 0 {
@@ -157,8 +158,11 @@ fn targets_of_random_linkages_with_their_pivots_given_lead_back_to_them() {
             let size = record.problem.resolved.task.points.iter().map(|p| (point(*p) - rows[0].0).norm());
             let size = size.fold(0.0, f64::max);
             for listed in &exact.linkages {
-                passes(&listed.linkage, listed, &rows, size);
-                let own = [listed.linkage.crank_pivot(), listed.linkage.follower_pivot()];
+                passes(listed.linkage.four_bar().expect("a four-bar"), listed, &rows, size);
+                let own = [
+                    listed.linkage.four_bar().expect("a four-bar").crank_pivot(),
+                    listed.linkage.four_bar().expect("a four-bar").follower_pivot(),
+                ];
                 for (i, _) in names {
                     let off =
                         own.iter().map(|pivot| (pivot - fixed[*i]).norm()).fold(f64::INFINITY, f64::min);
@@ -200,7 +204,13 @@ fn the_order_of_the_targets_changes_defects_and_no_linkage() {
     let [one, other] = [rows, turned].map(|rows| solved(&rows, "").exact.expect("exact answers"));
     assert_eq!((one.census.real, one.census.one_circuit), (other.census.real, other.census.one_circuit));
     for listed in &one.linkages {
-        assert!(other.linkages.iter().any(|found| is_near(&listed.linkage, &found.linkage)), "{listed:?}");
+        assert!(
+            other.linkages.iter().any(|found| is_near(
+                listed.linkage.four_bar().expect("a four-bar"),
+                found.linkage.four_bar().expect("a four-bar")
+            )),
+            "{listed:?}"
+        );
     }
 }
 

@@ -50,7 +50,10 @@ fn five_points_on_given_pivots_have_36_linkages_two_of_them_to_be_built() {
     let accepted: Vec<_> = record.candidates.iter().filter(|c| c.accepted).collect();
     assert_eq!(accepted.len(), 2);
     assert!(
-        accepted.iter().all(|c| c.linkage.follower_pivot() == point([4.0, 0.5]) && c.certified.is_some())
+        accepted
+            .iter()
+            .all(|c| c.linkage.four_bar().expect("a four-bar").follower_pivot() == point([4.0, 0.5])
+                && c.certified.is_some())
     );
     assert_eq!(bytes(&run("bolt-holes", 1)), bytes(&record));
 }
@@ -97,10 +100,10 @@ fn the_linkage_that_drew_the_points_is_among_the_answers() {
         let apart = (l.crank_pivot() - drew[0]).norm() + (l.follower_pivot() - drew[1]).norm();
         apart < 1e-9 && (l.crank() - 1.3).abs() < 1e-9 && (l.follower() - 3.6).abs() < 1e-9
     };
-    let found = exact
-        .linkages
-        .iter()
-        .filter(|class| near(&class.linkage) || class.others.iter().any(|form| near(&form.linkage)));
+    let found = exact.linkages.iter().filter(|class| {
+        near(class.linkage.four_bar().expect("a four-bar"))
+            || class.others.iter().any(|form| near(form.linkage.four_bar().expect("a four-bar")))
+    });
     let found: Vec<_> = found.collect();
     assert_eq!(found.len(), 1);
     assert!(found[0].free_of_defects);

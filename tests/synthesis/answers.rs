@@ -35,10 +35,12 @@ fn found(problem: &Problem) -> Vec<Candidate> {
 fn joints(candidate: &Candidate) -> [linkwright::internals::mechanism::Complex; 4] {
     let joints = candidate
         .linkage
+        .four_bar()
+        .expect("a four-bar")
         .position_with(candidate.crank_deg[0].to_radians(), candidate.t1_at[0])
         .joints()
         .expect("it closes");
-    let linkage = &candidate.linkage;
+    let linkage = candidate.linkage.four_bar().expect("a four-bar");
     [linkage.crank_pivot(), linkage.follower_pivot(), joints.crank_pin, joints.follower_pin]
 }
 
@@ -69,7 +71,7 @@ fn the_dimension_of_a_family_counts_unknowns_that_the_points_do_not_fix() {
     let best = &record.candidates[0];
     let of = |set: &[(&str, &str)]| dimension(&problem("v6", set), best);
     let a = best.linkage.crank().to_string();
-    let ground = best.linkage.ground().to_string();
+    let ground = best.linkage.four_bar().expect("a four-bar").ground().to_string();
     assert_eq!(of(&[]), Some(3));
     assert_eq!(of(&[("design.a", &a)]), Some(2));
     assert_eq!(of(&[("design.a", &a), ("design.ground", &ground)]), Some(1));
@@ -127,7 +129,7 @@ fn answers_of_one_curve_are_one_answer() {
     all.extend(cognates(&problem, &best));
     assert_eq!(all.len(), 3, "two cognates that meet the points");
     // Nearly the same linkage: one part in a thousand longer in its crank.
-    let mut parts = best.linkage.natural_coordinates();
+    let mut parts = best.linkage.four_bar().expect("a four-bar").natural_coordinates();
     parts.crank *= 1.001;
     let near = FourBar::new(parts).expect("it is one");
     all.extend(assess(&problem, &near, &best.crank_deg, &best.t1_at));
@@ -146,7 +148,10 @@ fn the_order_in_which_answers_are_found_decides_nothing() {
     turned.reverse();
     for wanted in [1, 3, 5] {
         let pick = |list: &[Candidate]| -> Vec<FourBar> {
-            chosen(&problem, list, wanted).into_iter().map(|i| list[i].linkage).collect()
+            chosen(&problem, list, wanted)
+                .into_iter()
+                .map(|i| *list[i].linkage.four_bar().expect("a four-bar"))
+                .collect()
         };
         assert_eq!(pick(&all), pick(&turned));
     }
@@ -165,7 +170,7 @@ fn the_cognate_in_step_with_the_crank_keeps_the_timing() {
             assert!((form.error.sum_sq / best.error.sum_sq - 1.0).abs() < 1e-9, "{name}");
             // One constant phase at every point, and the transmission angle of the candidate.
             let phase = form.crank_deg[0] - best.crank_deg[0];
-            let z = best.linkage.coupler_ratio();
+            let z = best.linkage.four_bar().expect("a four-bar").coupler_ratio();
             let off = (phase.to_radians() - (1.0 - z).arg()).rem_euclid(std::f64::consts::TAU);
             assert!(off.min(std::f64::consts::TAU - off) < 1e-9, "{name}: {off}");
             for (theirs, own) in form.crank_deg.iter().zip(&best.crank_deg) {
@@ -329,7 +334,7 @@ fn the_record_offers_what_can_be_built_beside_a_change_point() {
     let record = run_on(1, file());
     is_true(&record);
     let first = &record.candidates[0];
-    assert_eq!(first.linkage_type, LinkageType::ChangePoint);
+    assert_eq!(first.linkage_type.expect("a type"), LinkageType::ChangePoint);
     let kinds: Vec<WarningKind> = first.warnings.iter().map(|w| w.kind).collect();
     assert!(kinds.contains(&WarningKind::TransmissionAngle) && kinds.contains(&WarningKind::ChangePoint));
     let built = record.buildable.as_ref().expect("there is one");

@@ -40,7 +40,7 @@ fn what_is_accepted_of_a_closed_path_turns_fully_whether_or_not_a_type_is_asked_
         let record = true_record(&oval(n, k, &format!("{require}[solve]\nevaluations = 30000\n")));
         assert!(record.candidates[0].accepted, "{n} {k} {require}");
         for candidate in &record.candidates {
-            assert!(candidate.linkage_type.input_turns_fully(), "{n} {k} {require}");
+            assert!(candidate.linkage_type.expect("a type").input_turns_fully(), "{n} {k} {require}");
             assert!(
                 candidate.defects.is_empty()
                     && candidate.warnings.iter().all(|w| w.kind != WarningKind::ToAndFro)

@@ -65,8 +65,9 @@ fn seven_pairs_of_the_sine_are_met_exactly_from_every_seed_and_the_error_between
         let t1 = best.linkage.assembly().sign();
         let error = |x: f64| {
             let crank = best.linkage.ground_angle() + (input + scale * x).to_radians();
-            let turned =
-                follower_angle(&best.linkage, crank, t1).expect("it closes") - best.linkage.ground_angle();
+            let turned = follower_angle(best.linkage.four_bar().expect("a four-bar"), crank, t1)
+                .expect("it closes")
+                - best.linkage.four_bar().expect("a four-bar").ground_angle();
             let sign = best.sense.expect("a function").signs()[0];
             let wanted = output + sign * k * 90.0 * x.to_radians().sin();
             wrapped(wanted.to_radians() - turned).to_degrees().abs()
@@ -103,7 +104,8 @@ fn functions_of_random_linkages_are_found_again_from_the_proportions_of_their_pa
             missed.push((case, best.error.rms));
         }
         // The linkage by itself has the same figures: its ranges and its offset are found.
-        let (crank_deg, t1_at) = nearest_positions(&checked, &best.linkage).expect("it closes");
+        let (crank_deg, t1_at) =
+            nearest_positions(&checked, best.linkage.four_bar().expect("a four-bar")).expect("it closes");
         let found = assess(&checked, &best.linkage, &crank_deg, &t1_at).expect("it closes");
         assert!(
             found.error.rms < best.error.rms + 1e-3,

@@ -88,7 +88,7 @@ pub(crate) fn assert_true(record: &Record) {
     let pairs = spec.task.pairs();
     let written = spec.task.written_ranges_deg();
     for candidate in &record.candidates {
-        let linkage = &candidate.linkage;
+        let linkage = candidate.linkage.four_bar().expect("a four-bar");
         let ground = linkage.ground_angle();
         let (input_offset, output_offset) = (
             candidate.input_offset_deg.expect("a function"),
@@ -362,7 +362,8 @@ fn a_linkage_by_itself_is_measured_in_its_own_sense_and_no_record_may_run_its_in
         let best = record.candidates[0].clone();
         // Nothing is said of the sense: it is found.
         let problem = Problem::new(of("any")).expect("a problem");
-        let (crank_deg, t1_at) = nearest_positions(&problem, &best.linkage).expect("it closes");
+        let (crank_deg, t1_at) =
+            nearest_positions(&problem, best.linkage.four_bar().expect("a four-bar")).expect("it closes");
         let found = assess(&problem, &best.linkage, &crank_deg, &t1_at).expect("it closes");
         assert_eq!(found.sense, Some(sense));
         assert!((found.error.rms - best.error.rms).abs() < 1e-6, "{} {}", found.error.rms, best.error.rms);

@@ -106,7 +106,12 @@ pub fn solved(spec: &ProblemSpec) -> Record {
 }
 
 fn curve(candidate: &Candidate) -> CouplerCurve {
-    CouplerCurve::through(&candidate.linkage, candidate.crank_deg[0].to_radians(), candidate.t1_at[0], 240)
+    CouplerCurve::through(
+        candidate.linkage.four_bar().expect("a four-bar"),
+        candidate.crank_deg[0].to_radians(),
+        candidate.t1_at[0],
+        240,
+    )
 }
 
 /// The largest distance of points of one curve, taken back, from the other.

@@ -37,7 +37,7 @@ pub(crate) const ALONE: &str = "[solve]\ncandidates = 1\nadvice = false\n";
 
 /// The errors of a candidate by circles that meet, without any of the library's kinematics.
 fn recomputed(candidate: &Candidate, spec: &ProblemSpec) -> (f64, f64, f64) {
-    let l = &candidate.linkage;
+    let l = candidate.linkage.four_bar().expect("a four-bar");
     let (a, b) = (l.crank_pivot(), l.follower_pivot());
     let frame = candidate.frame_deg.expect("a motion has a frame").to_radians();
     let body = spec.task.body.as_ref().expect("a motion");
@@ -302,21 +302,23 @@ fn what_is_called_accepted_meets_every_requirement() {
         assert_true(&record);
         for candidate in record.candidates.iter().filter(|candidate| candidate.accepted) {
             assert!(candidate.defects.is_empty());
-            let links = candidate.linkage.links();
+            let links = candidate.linkage.four_bar().expect("a four-bar").links();
             let ratio =
                 links.iter().copied().fold(0.0, f64::max) / links.iter().copied().fold(f64::MAX, f64::min);
             match case % 4 {
                 0 => assert!(candidate.transmission_deg.worst >= 25.0 - 1e-5),
                 1 => assert!(ratio <= 6.0 + 1e-5),
                 2 => {
-                    for pivot in [candidate.linkage.crank_pivot(), candidate.linkage.follower_pivot()] {
+                    for pivot in [
+                        candidate.linkage.four_bar().expect("a four-bar").crank_pivot(),
+                        candidate.linkage.four_bar().expect("a four-bar").follower_pivot(),
+                    ] {
                         let off = pivot - at;
                         assert!(off.re.abs().max(off.im.abs()) <= 2.0 * size * (1.0 + 1e-6));
                     }
                 }
                 _ => assert!(
-                    ["crank-rocker", "double-rocker", "triple-rocker"]
-                        .contains(&candidate.linkage_type.name())
+                    ["crank-rocker", "double-rocker", "triple-rocker"].contains(&candidate.type_name())
                 ),
             }
         }

@@ -13,7 +13,7 @@ use linkwright::internals::synthesis::starts::Starts;
 use linkwright::internals::synthesis::{Budget, Context};
 use linkwright::internals::task::forms::timed::TimedPathFit;
 use linkwright::spec::{ProblemSpec, TimingSpec};
-use linkwright::{AngleOffset, FourBar, NaturalCoordinates, Problem};
+use linkwright::{AngleOffset, FourBar, Problem};
 use std::sync::atomic::AtomicBool;
 
 /// A foot 120 mm along the ground in thirteen even steps while the crank turns by `stance_deg`, and back over (60, 40) at any
@@ -134,7 +134,8 @@ fn a_linkage_by_itself_is_measured_at_the_timed_angles_and_nearest_between_them(
     let spec = foot(150.0, ALONE);
     let problem = Problem::new(spec.clone()).expect("a problem");
     let best = solved(spec).candidates.remove(0);
-    let (crank_deg, _) = nearest_positions(&problem, &best.linkage).expect("it closes");
+    let (crank_deg, _) =
+        nearest_positions(&problem, best.linkage.four_bar().expect("a four-bar")).expect("it closes");
     for (has, found) in best.crank_deg.iter().zip(&crank_deg) {
         assert!((has - found).abs() < 1e-3, "{has} {found}");
     }
@@ -153,7 +154,7 @@ fn a_wrong_dimension_shifts_the_path_as_its_derivative_says() {
         ["Ax", "Ay", "Bx", "By", "a", "b", "c", "d", "e"].into_iter().zip(felt.dimensions)
     {
         assert_eq!(dimension.name, letter);
-        let mut parameters = NaturalCoordinates::from(best.linkage);
+        let mut parameters = best.linkage.four_bar().expect("a four-bar").natural_coordinates();
         match letter {
             "Ax" => parameters.crank_pivot[0] += step,
             "Ay" => parameters.crank_pivot[1] += step,
@@ -172,8 +173,11 @@ fn a_wrong_dimension_shifts_the_path_as_its_derivative_says() {
         };
         // The shift at a target, and the way of the coupler point there, by radian.
         let of = |j: usize| {
-            let here = place(&best.linkage, j, 0.0);
-            ((place(&other, j, 0.0) - here) / step, (place(&best.linkage, j, step) - here) / step)
+            let here = place(best.linkage.four_bar().expect("a four-bar"), j, 0.0);
+            (
+                (place(&other, j, 0.0) - here) / step,
+                (place(best.linkage.four_bar().expect("a four-bar"), j, step) - here) / step,
+            )
         };
         let (shifts, ways): (Vec<_>, Vec<_>) = (0..14).map(of).unzip();
         let along = |j: usize| (ways[j].conj() * shifts[j]).re;

@@ -57,9 +57,10 @@ fn poses_of_random_linkages_are_met_exactly_with_the_pivots_on_lines_through_the
         assert_true(&record);
         let best = &record.candidates[0];
         let (value, met) = recorded(best);
-        for (name, pivot, line) in
-            [("A", best.linkage.crank_pivot(), a), ("B", best.linkage.follower_pivot(), b)]
-        {
+        for (name, pivot, line) in [
+            ("A", best.linkage.four_bar().expect("a four-bar").crank_pivot(), a),
+            ("B", best.linkage.four_bar().expect("a four-bar").follower_pivot(), b),
+        ] {
             if lines.contains(name) {
                 assert!(off(pivot, line) <= value + 1e-12 * far, "case {case}: {} {value}", off(pivot, line));
             }
@@ -125,7 +126,11 @@ fn paths_hold_lines_and_points_too() {
             let (value, met) = recorded(best);
             assert!(best.accepted && met && value < 1e-9, "{timed} {lines}: {value}");
             assert!(a.is_none_or(|line| off(best.linkage.crank_pivot(), line) < 1e-9));
-            assert!(b.is_none_or(|line| off(best.linkage.follower_pivot(), line) < 1e-9));
+            assert!(
+                b.is_none_or(
+                    |line| off(best.linkage.four_bar().expect("a four-bar").follower_pivot(), line) < 1e-9
+                )
+            );
             if lines.contains("[[1, -3]]") {
                 assert!((best.linkage.crank_pivot() - Complex::new(1.0, -3.0)).norm() < 1e-12);
             }

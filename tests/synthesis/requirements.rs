@@ -109,7 +109,7 @@ fn a_bare_closed_path_is_drawn_by_links_of_three_sizes_at_most() {
     // The oval is 80 wide and 40 high.
     let size = 80f64.hypot(40.0);
     let longest = |record: &Record| {
-        let linkage = record.candidates[0].linkage;
+        let linkage = record.candidates[0].linkage.four_bar().expect("a four-bar");
         linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
     };
     let (plain, any, typed) = (run(None), run(Some("any")), run(Some(&(3.0 * size).to_string())));
@@ -130,7 +130,7 @@ fn a_bare_closed_path_is_drawn_by_links_of_three_sizes_at_most() {
 fn extent_and_longest_link_are_what_the_joints_and_the_lengths_say() {
     let text = egg("[require]\ntype = [\"crank-rocker\"]\nextent_max = 1e6\nlongest_max = 1e6\n");
     let record = accepted_and_true(&text);
-    let linkage = record.candidates[0].linkage;
+    let linkage = record.candidates[0].linkage.four_bar().expect("a four-bar");
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for i in 0..36_000 {
         let joints = linkage.position(f64::from(i).to_radians() / 100.0).joints().expect("it turns fully");
@@ -159,7 +159,7 @@ fn every_type_can_be_asked_for() {
             "format = 1\n[task.path]\npoints = [[0, 0], [10, 3], [20, 5], [30, 5], [40, 3], [50, 0]]\n\
              [require]\ntype = [\"{kind}\"]\n"
         ));
-        assert_eq!(record.candidates[0].linkage_type.name(), kind);
+        assert_eq!(record.candidates[0].type_name(), kind);
     }
 }
 
@@ -168,7 +168,7 @@ fn fixed_and_derived_values_are_kept_to_the_last_figure() {
     let record = accepted_and_true(&egg(
         "[design]\nA = [-30, -40]\nB = [[20, 80], [-60, 20]]\nground = 70\na = 15\nd = [30, 90]\n",
     ));
-    let linkage = record.candidates[0].linkage;
+    let linkage = record.candidates[0].linkage.four_bar().expect("a four-bar");
     assert_eq!((linkage.crank_pivot().re, linkage.crank_pivot().im), (-30.0, -40.0));
     assert_eq!(linkage.crank(), 15.0);
     assert!((linkage.ground() - 70.0).abs() <= 70.0 * 1e-7);
@@ -178,7 +178,7 @@ fn fixed_and_derived_values_are_kept_to_the_last_figure() {
 #[test]
 fn distances_to_the_coupler_point_can_be_the_coordinates() {
     let record = accepted_and_true(&egg("[design]\nb = 80\nd = [20, 90]\ne = [20, 90]\n"));
-    let linkage = record.candidates[0].linkage;
+    let linkage = record.candidates[0].linkage.four_bar().expect("a four-bar");
     assert_eq!(linkage.coupler(), 80.0);
     assert!(
         (20.0..=90.0).contains(&linkage.crank_side()) && (20.0..=90.0).contains(&linkage.follower_side())
@@ -194,7 +194,7 @@ fn a_coupler_point_on_the_crank_pin_goes_round_with_it() {
 #[test]
 fn a_flat_ground_stays_flat() {
     let record = accepted_and_true(&egg("[design]\nground_angle_deg = 0\n"));
-    let linkage = record.candidates[0].linkage;
+    let linkage = record.candidates[0].linkage.four_bar().expect("a four-bar");
     assert_eq!(linkage.crank_pivot().im, linkage.follower_pivot().im);
 }
 
@@ -250,8 +250,13 @@ fn a_footprint_counts_the_whole_turn_however_many_turns_the_timing_spans() {
     let record = run_on(2, parse(text));
     for candidate in record.candidates.iter().filter(|c| c.accepted) {
         for i in 0..3600 {
-            let joints =
-                candidate.linkage.position(f64::from(i) * 1e-1f64.to_radians()).joints().expect("a crank");
+            let joints = candidate
+                .linkage
+                .four_bar()
+                .expect("a four-bar")
+                .position(f64::from(i) * 1e-1f64.to_radians())
+                .joints()
+                .expect("a crank");
             for p in [joints.crank_pin, joints.follower_pin, joints.coupler_point] {
                 assert!(
                     p.re > -1.2 - 1e-6 && p.im > -1.2 - 1e-6 && p.re < 2.0 + 1e-6 && p.im < 2.0 + 1e-6,

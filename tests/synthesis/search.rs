@@ -40,7 +40,7 @@ fn the_other_published_problems_are_solved_from_five_seeds() {
 fn the_answer_to_eighteen_points_is_a_crank_rocker_without_defects() {
     let record = run_on(2, literature("k18", &[]));
     let first = &record.candidates[0];
-    assert_eq!(first.linkage_type, LinkageType::CrankRocker);
+    assert_eq!(first.linkage_type.expect("a type"), LinkageType::CrankRocker);
     assert!(first.accepted && first.defects.is_empty());
     assert_eq!(record.termination.reason, Reason::Converged);
     assert!(record.termination.reproducible);
@@ -165,7 +165,12 @@ fn candidates_are_distinct_curves() {
         for other in &record.candidates[..i] {
             let apart = one.crank_deg.iter().zip(&other.crank_deg).any(|(a, b)| {
                 let at = |c: &linkwright::internals::record::Candidate, deg: f64| {
-                    c.linkage.position(deg.to_radians()).joints().map(|j| j.coupler_point)
+                    c.linkage
+                        .four_bar()
+                        .expect("a four-bar")
+                        .position(deg.to_radians())
+                        .joints()
+                        .map(|j| j.coupler_point)
                 };
                 match (at(one, *a), at(other, *b)) {
                     (Some(p), Some(q)) => (p - q).norm() > 1e-3,
@@ -230,7 +235,7 @@ fn a_problem_with_everything_fixed_has_the_one_answer_that_it_leaves() {
                  coupler_x = 5\ncoupler_y = 0\n[solve]\nmethod = \"METHOD\"\n";
     for method in ["auto", "genetic", "differential-evolution", "least-squares"] {
         let record = run_on(1, parse(&fixed.replace("METHOD", method)));
-        let linkage = record.candidates[0].linkage;
+        let linkage = record.candidates[0].linkage.four_bar().expect("a four-bar");
         assert_eq!((linkage.crank(), linkage.coupler(), linkage.follower()), (1.0, 2.5, 2.5), "{method}");
         assert_eq!(verify(&record).expect("the problem is one"), Vec::new());
     }

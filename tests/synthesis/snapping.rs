@@ -157,7 +157,7 @@ fn what_is_kept_or_set_stays_and_what_cannot_be_snapped_is_told() {
     wish.fixed.crank_pivot = Some([3.0, -2.0]);
     wish.fixed.follower_pivot = Some([83.0, -2.0]);
     let found = snap(Context::new(&problem, &budget()), &candidate, &wish).expect("an answer");
-    let best = &found.candidates[0].linkage;
+    let best = found.candidates[0].linkage.four_bar().expect("a four-bar");
     assert_eq!((best.crank(), best.follower()), (20.0, 51.5));
     assert_eq!(best.natural_coordinates().crank_pivot, [3.0, -2.0]);
     assert_eq!(best.natural_coordinates().follower_pivot, [83.0, -2.0]);
@@ -170,7 +170,7 @@ fn what_is_kept_or_set_stays_and_what_cannot_be_snapped_is_told() {
     let mut wish = request(7.0, &[Length::Ground]);
     wish.fixed.follower_pivot = Some([83.0, -2.0]);
     let found = snap(Context::new(&problem, &budget()), &candidate, &wish).expect("an answer");
-    let best = &found.candidates[0].linkage;
+    let best = found.candidates[0].linkage.four_bar().expect("a four-bar");
     assert_eq!(best.natural_coordinates().follower_pivot, [83.0, -2.0]);
     assert!(
         (best.ground() - 77.0).abs() < 1e-12 || (best.ground() - 84.0).abs() < 1e-12,

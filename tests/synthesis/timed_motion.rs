@@ -292,7 +292,7 @@ fn the_pins_of_a_body_lie_in_their_region() {
         assert_true(&held);
         // C and D by their distances, in the body's own directions at the first pose.
         let pins = |candidate: &linkwright::Candidate| {
-            let l = &candidate.linkage;
+            let l = candidate.linkage.four_bar().expect("a four-bar");
             let joints = l
                 .position_with(candidate.crank_deg[0].to_radians(), candidate.t1_at[0])
                 .joints()

@@ -199,7 +199,10 @@ fn lengths_are_brought_to_one_unit_and_that_changes_no_verdict() {
         assert!(near(mm_error.sum_sq, 645.16 * inch_error.sum_sq));
         assert!(near(mm_error.to_curve.rms, 25.4 * inch_error.to_curve.rms));
         assert!(near(mm.size(), 25.4 * inch.size()), "{} {}", mm.size(), inch.size());
-        assert!(near(mm.candidate.linkage.coupler(), 25.4 * inch.candidate.linkage.coupler()));
+        assert!(near(
+            mm.candidate.linkage.four_bar().expect("a four-bar").coupler(),
+            25.4 * inch.candidate.linkage.four_bar().expect("a four-bar").coupler()
+        ));
         assert_eq!(mm.candidate.link_ratio, inch.candidate.link_ratio);
         assert_eq!(mm.candidate.accepted, inch.candidate.accepted);
     }

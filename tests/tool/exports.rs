@@ -38,7 +38,7 @@ fn subject(linkage: FourBar, unit: Option<Unit>) -> Subject {
         name: "test".into(),
         standing: "a linkage file".into(),
         unit,
-        linkage,
+        linkage: linkage.into(),
         target: vec![[1.0, 2.0], [3.0, 2.5], [4.0, 1.0]],
         closed: true,
         positions: vec![(0.4, AssemblyMode::Plus)],
@@ -88,7 +88,7 @@ fn mm(unit: Option<Unit>) -> f64 {
 
 /// The linkage's own size times `factor`, computed apart from the program.
 fn plates_of(subject: &Subject, factor: f64, radius: f64) -> Vec<Plate> {
-    let plates = Plate::all(&subject.linkage, 0.0).map(|plate| {
+    let plates = Plate::all(subject.linkage.four_bar().expect("a four-bar"), 0.0).map(|plate| {
         let mut holes = plate.holes;
         holes.iter_mut().for_each(|hole| hole.at *= factor);
         Plate::new(plate.link, holes, radius)
@@ -124,9 +124,9 @@ fn svg_dimensions_are_true_millimetres() {
             (x, y)
         };
         let apart = |p: &str, q: &str| (at(p).0 - at(q).0).hypot(at(p).1 - at(q).1);
-        let n = subject.linkage.natural_coordinates();
+        let n = subject.linkage.four_bar().expect("a four-bar").natural_coordinates();
         let expected = [
-            ("A", "B", subject.linkage.ground()),
+            ("A", "B", subject.linkage.ground().expect("a four-bar has one")),
             ("A", "C", n.crank),
             ("C", "D", n.coupler),
             ("B", "D", n.follower),
@@ -301,7 +301,8 @@ fn scad_parameters_are_the_linkage_in_millimetres() {
             let line = scad.lines().find(|line| line.starts_with(&head)).expect("a parameter");
             line[head.len()..].split(';').next().expect("a value").parse().expect("a number")
         };
-        let (factor, n) = (3.0 * mm(subject.unit), subject.linkage.natural_coordinates());
+        let (factor, n) =
+            (3.0 * mm(subject.unit), subject.linkage.four_bar().expect("a four-bar").natural_coordinates());
         for (name, value) in [("a", n.crank), ("b", n.coupler), ("c", n.follower), ("Ax", n.crank_pivot[0])] {
             assert_eq!(number(name), value * factor, "{name}");
         }
@@ -315,12 +316,15 @@ fn linkage_files_read_back_and_scale() {
     let subject = &subjects()[1];
     let toml = text(subject, Format::Toml, &[("scale", "2")]);
     let read = linkwright::internals::files::linkage_file::parse("x.toml", &toml).expect("a linkage file");
-    let n = subject.linkage.natural_coordinates();
+    let n = subject.linkage.four_bar().expect("a four-bar").natural_coordinates();
     assert_eq!((read.unit, read.name.as_str()), (Some(Unit::In), "test"));
     assert_eq!(read.linkage.natural_coordinates().crank, 2.0 * n.crank);
     let json: serde_json::Value = serde_json::from_str(&text(subject, Format::Json, &[])).expect("JSON");
     let linkage: FourBar = serde_json::from_value(json["linkage"].clone()).expect("a linkage");
-    assert_eq!((linkage, json["unit"].as_str()), (subject.linkage, Some("in")));
+    assert_eq!(
+        (&linkage, json["unit"].as_str()),
+        (subject.linkage.four_bar().expect("a four-bar"), Some("in"))
+    );
     let csv = text(subject, Format::Csv, &[("positions", "24")]);
     assert_eq!(csv.lines().count(), 25);
     assert!(csv.starts_with("crank_deg,t1,t2,Cx,Cy,Dx,Dy,Px,Py,"));
@@ -347,7 +351,8 @@ fn cut_lists_have_every_distance() {
             }
         }
         let list = text(&subject, Format::CutList, &set);
-        let pins = if subject.linkage.ground() == 0.0 { "3 pins" } else { "4 pins" };
+        let pins =
+            if subject.linkage.four_bar().expect("a four-bar").ground() == 0.0 { "3 pins" } else { "4 pins" };
         assert!(list.contains(pins) && list.contains("material 2.000 mm thick"), "{list}");
         assert_eq!(list.contains("P is on a pin"), subject.linkage.crank_side() == 0.0);
     }
@@ -425,14 +430,14 @@ fn settings_that_do_not_fit_are_refused_with_a_remedy() {
     assert!(refused(Format::Svg, "samples", "1").contains("samples"));
     // A crank angle that a rocker does not reach.
     let rocker = Subject {
-        linkage: linkage([0.0, 0.0, 5.0, 0.0, 4.0, 2.0, 2.5, 1.0, 1.5], CouplerSide::Plus),
+        linkage: linkage([0.0, 0.0, 5.0, 0.0, 4.0, 2.0, 2.5, 1.0, 1.5], CouplerSide::Plus).into(),
         ..subject.clone()
     };
     let away = settings(Format::Svg, &[("crank_deg", "180")]);
     assert!(export(&rocker, Format::Svg, &away).expect_err("open").message.contains("cannot be joined"));
     // Links that never meet: no drawing, but plates.
     let apart = Subject {
-        linkage: linkage([0.0, 0.0, 50.0, 0.0, 4.0, 2.0, 2.5, 1.0, 1.5], CouplerSide::Plus),
+        linkage: linkage([0.0, 0.0, 50.0, 0.0, 4.0, 2.0, 2.5, 1.0, 1.5], CouplerSide::Plus).into(),
         positions: Vec::new(),
         ..subject.clone()
     };
@@ -457,7 +462,12 @@ fn defaults_fit_every_linkage_and_are_stated() {
             assert_eq!(again, exported);
         }
     }
-    assert!(Plate::of(&subjects()[4].linkage, Link::Ground, 1.0).distinct_holes().len() == 1);
+    assert!(
+        Plate::of(subjects()[4].linkage.four_bar().expect("a four-bar"), Link::Ground, 1.0)
+            .distinct_holes()
+            .len()
+            == 1
+    );
 }
 
 fn program(folder: &Path, arguments: &[&str]) -> (i32, String, String) {

@@ -123,7 +123,7 @@ fn the_rows_of_the_table_are_the_members_of_the_record_to_the_last_digit() {
         let figures: Vec<f64> = Axis::ALL.map(|axis| member.figures.of(axis)).into();
         assert_eq!((0..7).map(number).collect::<Vec<_>>(), figures);
         assert_eq!(cells[7], "four-bar");
-        let l = &member.candidate.linkage;
+        let l = member.candidate.linkage.four_bar().expect("a four-bar");
         let keys = [l.crank_pivot().re, l.crank_pivot().im, l.follower_pivot().re, l.follower_pivot().im];
         assert_eq!((8..12).map(number).collect::<Vec<_>>(), keys);
         let lengths = [l.crank(), l.coupler(), l.follower(), l.crank_side(), l.follower_side()];

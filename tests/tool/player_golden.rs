@@ -59,7 +59,9 @@ fn motions(record: &Record) -> Vec<Value> {
             .crank_deg
             .iter()
             .zip(&candidate.t1_at)
-            .map(|(angle, t1)| candidate.linkage.position_with(angle.to_radians(), *t1))
+            .map(|(angle, t1)| {
+                candidate.linkage.four_bar().expect("a four-bar").position_with(angle.to_radians(), *t1)
+            })
             .map(|position| pair(position.joints().expect("closed").coupler_point))
             .collect();
         let key = format!("c{}", i + 1);

@@ -378,7 +378,7 @@ fn what_it_takes_to_build_the_best_and_the_buildable_one_is_told() {
     // The figures are those of `build`.
     let problem = Problem::new(record.problem.resolved.clone()).expect("a problem");
     let best = &record.candidates[0];
-    let hole = Build::usual_hole(&best.linkage, record.problem.unit);
+    let hole = Build::usual_hole(best.linkage.four_bar().expect("a four-bar"), record.problem.unit);
     let found = Practicality::of_candidate(&problem, best, Build::new(hole, hole)).expect("it can be joined");
     let felt = found.sensitivity.expect("it has derivatives");
     assert!(section.contains(&format!("The worst dimension is {}.", felt.worst_dimension().name)));
@@ -407,7 +407,7 @@ fn the_player_gets_every_digit_of_every_mechanism() {
     assert!(keys.starts_with(&["c1", "c1a1", "c1a2", "c2"]) && keys.ends_with(&["b", "x1"]), "{keys:?}");
     let first: linkwright::internals::mechanism::FourBar =
         serde_json::from_value(mechanisms[0]["linkage"].clone()).expect("a linkage");
-    assert_eq!(first, record.candidates[0].linkage);
+    assert_eq!(&first, record.candidates[0].linkage.four_bar().expect("a four-bar"));
     let angles: Vec<f64> = serde_json::from_value(mechanisms[0]["crank_deg"].clone()).expect("angles");
     assert_eq!(angles, record.candidates[0].crank_deg);
 }
@@ -423,7 +423,7 @@ fn a_motion_is_driven_as_its_linkage_can_move() {
     one_branch.candidates[0].t1_at = vec![AssemblyMode::Plus; 3];
     assert_eq!(kind(&one_branch, 0), "rock");
     let mut apart = k18();
-    apart.candidates[0].linkage = linkage([0.0, 0.0], [10.0, 0.0], [1.0, 1.0, 1.0, 1.0, 1.0], 1, 1);
+    apart.candidates[0].linkage = linkage([0.0, 0.0], [10.0, 0.0], [1.0, 1.0, 1.0, 1.0, 1.0], 1, 1).into();
     assert_eq!(kind(&apart, 0), "none");
 }
 
@@ -520,7 +520,7 @@ fn pages_for_the_test_in_a_browser_are_written() {
     one_branch.candidates[0].t1_at = vec![AssemblyMode::Plus; 3];
     let mut apart = k18();
     apart.candidates.truncate(1);
-    apart.candidates[0].linkage = linkage([0.0, 0.0], [10.0, 0.0], [1.0, 1.0, 1.0, 1.0, 1.0], 1, 1);
+    apart.candidates[0].linkage = linkage([0.0, 0.0], [10.0, 0.0], [1.0, 1.0, 1.0, 1.0, 1.0], 1, 1).into();
     let mut empty = k18();
     empty.candidates.clear();
     let records = [

@@ -27,7 +27,15 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
         Given::Run(run) => {
             let chosen = run.one()?;
             let problem = Problem::new(run.record.problem.resolved.clone()).map_err(refuse)?;
-            let (linkage, unit) = (chosen.candidate.linkage, run.record.problem.unit);
+            let kind = chosen.candidate.linkage.kind();
+            let unit = run.record.problem.unit;
+            let Some(&linkage) = chosen.candidate.linkage.four_bar() else {
+                return Err(refuse(format!(
+                    "{} is a {kind}, and plates and layers are computed for four-bars alone: \
+                     linkwright analyze draws it and prints its motion",
+                    escaped(&chosen.label)
+                )));
+            };
             let found = Practicality::of_candidate(&problem, chosen.candidate, made(&linkage, unit));
             (escaped(&chosen.label), linkage, unit, found)
         }

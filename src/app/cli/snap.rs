@@ -12,6 +12,7 @@ use crate::files::generator::FileKind;
 use crate::files::linkage_file;
 use crate::files::name;
 use crate::judge::practicality::{Build, Practicality};
+use crate::mechanism::FourBar;
 use crate::record::{Reason, Record};
 use crate::report::practicality::practicality_text;
 use crate::report::snap::snap_text;
@@ -61,9 +62,12 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     let written = write(options, &record, begun, search_s)?;
     terminal::answer(&format!("{}\n", subject.label));
     terminal::answer(&snap_text(&subject.candidate, &request, &snapped, subject.unit, terminal::colour()));
-    let hole = Build::usual_hole(&best.linkage, subject.unit);
-    if let Some(found) = Practicality::of_candidate(&subject.problem, best, Build::new(hole, hole)) {
-        let tolerance = build::usual_tolerance(&best.linkage, subject.unit);
+    let of_practice = |linkage: &FourBar| {
+        let hole = Build::usual_hole(linkage, subject.unit);
+        let found = Practicality::of_candidate(&subject.problem, best, Build::new(hole, hole))?;
+        Some((found, build::usual_tolerance(linkage, subject.unit)))
+    };
+    if let Some((found, tolerance)) = best.linkage.four_bar().and_then(of_practice) {
         terminal::answer("\n");
         terminal::answer(&practicality_text(&found, subject.unit, tolerance, terminal::colour()));
     }

@@ -251,6 +251,9 @@ pub(super) enum DetailsError {
     Assembly,
     #[error("this linkage cannot be assembled at every point")]
     NotAssembled,
+    /// Plates are of four-bars.
+    #[error("plates and layers are computed for four-bars alone")]
+    OfAnotherKind,
     #[error("{0} takes no settings")]
     NoSettings(String),
     #[error("{0}, html, sheet, points, layers or archive")]
@@ -311,7 +314,8 @@ impl House {
         let t1_at: Vec<AssemblyMode> = drawn.t1_at.iter().map(assembly).collect::<Result<_, _>>()?;
         let asked = ProblemRecord::try_from(Job::from(file)).map_err(ProblemError::from)?;
         if let Some(record) = self.searches.finished.of(&asked.digest) {
-            let same = |c: &Candidate| c.linkage == linkage && c.crank_deg == drawn.crank_deg;
+            let same =
+                |c: &Candidate| c.linkage.four_bar() == Some(&linkage) && c.crank_deg == drawn.crank_deg;
             if let Some(index) = record.candidates.iter().position(same) {
                 let mut record = (*record).clone();
                 (record.problem.name, record.problem.unit) = (asked.name, asked.unit);

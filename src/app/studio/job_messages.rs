@@ -143,7 +143,7 @@ impl From<&Candidate> for Best {
         Best {
             rms: candidate.error.rms,
             max: candidate.error.max,
-            linkage_type: candidate.linkage_type.name().to_owned(),
+            linkage_type: candidate.type_name().to_owned(),
             transmission_deg: candidate.transmission_deg.worst,
             accepted: candidate.accepted,
         }

@@ -3,7 +3,7 @@
 use super::pin_map::PinMap;
 use super::targets::{BodyAsk, FunctionAsk};
 use crate::files::problem_file::Expect;
-use crate::mechanism::{LinkageType, NaturalCoordinates, Unit};
+use crate::mechanism::{LinkageType, NaturalCoordinates, OneLoop, Unit};
 use crate::record::{AngleErrorRecord, Candidate, ExactLinkage, ExactRecord, ProblemRecord, Relaxation};
 use crate::report::exact;
 use crate::report::html::Drive;
@@ -240,8 +240,8 @@ pub struct Shown {
     /// Its number: it keeps it while it follows the hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub number: Option<u64>,
-    /// The linkage, as in linkage files.
-    pub linkage: NaturalCoordinates,
+    /// The linkage, as in records.
+    pub linkage: OneLoop,
     /// Its drive over its motion.
     pub drive: Drive,
     /// The crank angle at each target point, degrees.
@@ -268,7 +268,7 @@ pub struct Shown {
     pub angle: Option<AngleErrorRecord>,
     /// Its type.
     #[serde(rename = "type")]
-    pub linkage_type: LinkageType,
+    pub linkage_type: Option<LinkageType>,
     /// The worst transmission angle, degrees from 0 to 90.
     pub transmission_deg: f64,
     /// Longest over shortest link.
@@ -308,8 +308,8 @@ impl From<&Candidate> for Shown {
         Shown {
             rank: candidate.rank,
             number: None,
-            linkage: candidate.linkage.natural_coordinates(),
-            drive: Drive::new(&candidate.linkage, &candidate.crank_deg, &candidate.t1_at),
+            linkage: candidate.linkage,
+            drive: Drive::new(candidate.linkage, &candidate.crank_deg, &candidate.t1_at),
             crank_deg: candidate.crank_deg.clone(),
             t1_at: candidate.t1_at.iter().map(|t1| i64::from(*t1)).collect(),
             worst: candidate.error.max_at,

@@ -48,7 +48,7 @@ pub(super) fn layers(record: &Record, candidate: &Candidate, sizes: &Sizes) -> R
     let settings = settings_for(Format::CutList, sizes)?;
     let unit = record.problem.unit.or(settings.unit);
     let problem = Problem::new(record.problem.resolved.clone()).map_err(super::asked::AskError::Task)?;
-    let linkage = &candidate.linkage;
+    let linkage = candidate.linkage.four_bar().ok_or(DetailsError::OfAnotherKind)?;
     let length = |mm: f64| mm * unit.map_or(1.0, |unit| Unit::Mm.factor_to(unit)) / settings.scale();
     let hole = settings.hole_mm.map_or_else(|| Build::usual_hole(linkage, unit), length);
     let build = Build::new(hole, settings.margin_mm.map_or(hole, length))

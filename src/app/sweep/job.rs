@@ -3,7 +3,7 @@
 use crate::app::job::run::{Context, Job, run};
 use crate::files::problem_file;
 use crate::files::sweep_file::typed;
-use crate::judge::figures::{extent, longest};
+use crate::judge::figures::extent;
 use crate::record::sweep::{Best, Plan, Row, Status};
 use crate::record::{Evaluations, Record};
 use crate::task::Problem;
@@ -119,7 +119,7 @@ fn best_of(record: &Record) -> Result<Option<Best>, crate::task::TaskError> {
         transmission_worst_deg: first.transmission_deg.worst,
         link_ratio: first.link_ratio,
         extent: extent(&problem, first),
-        longest: longest(&first.linkage),
+        longest: first.linkage.longest(),
         linkage: first.linkage,
     }))
 }

@@ -11,8 +11,8 @@ use crate::files::name;
 use crate::files::toml_text::TomlText;
 use crate::files::toml_values::{Count, Number, OnlyTable, XY};
 use crate::mechanism::{
-    AssemblyMode, CouplerSide, FourBar, Linkage, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, Unit,
-    VectorLoop,
+    AssemblyMode, CouplerSide, FourBar, Linkage, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, OneLoop,
+    Unit, VectorLoop,
 };
 use crate::record::Candidate;
 use crate::task::Sense;
@@ -350,6 +350,15 @@ pub fn to_toml(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
     text_of("A four-bar linkage", letters, name, unit, &table)
 }
 
+/// Returns the text of the linkage file of a linkage of any kind; every number reads back to the same digits.
+pub fn any_to_toml(name: &str, unit: Option<Unit>, linkage: &OneLoop) -> String {
+    match linkage {
+        OneLoop::FourBar(linkage) => to_toml(name, unit, linkage),
+        OneLoop::SliderCrank(linkage) => slider_crank_to_toml(name, unit, linkage),
+        OneLoop::InvertedSliderCrank(linkage) => inverted_slider_crank_to_toml(name, unit, linkage),
+    }
+}
+
 /// Returns the text of a linkage file: its kind, the comment on its letters, the keys at the top and its table.
 fn text_of(kind: &str, letters: &str, name: &str, unit: Option<Unit>, table: &str) -> String {
     let name = toml::Value::String(name.to_owned());
@@ -378,8 +387,8 @@ impl Carried {
 }
 
 /// Returns the linkage file of a linkage as [`to_toml`] does, with a comment on the body or the function.
-pub fn to_toml_with(name: &str, unit: Option<Unit>, linkage: &FourBar, carried: Option<Carried>) -> String {
-    let text = to_toml(name, unit, linkage);
+pub fn to_toml_with(name: &str, unit: Option<Unit>, linkage: &OneLoop, carried: Option<Carried>) -> String {
+    let text = any_to_toml(name, unit, linkage);
     let comment = match carried {
         None => return text,
         Some(Carried::Body(frame_deg)) => format!(

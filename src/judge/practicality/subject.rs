@@ -37,7 +37,7 @@ impl Practicality {
     /// Examines a candidate over the cycle or the motion used, as for its transmission angle; the path at its positions
     /// on the target.
     ///
-    /// `None` if it lacks a position for one of the problem's points, or has a crank angle that is no number.
+    /// `None` if it lacks a position for one of the problem's points, or has a crank angle that is no number, or the linkage is no four-bar.
     pub fn of_candidate(problem: &Problem, candidate: &Candidate, build: Build) -> Option<Self> {
         let n = problem.task().len();
         let angles = &candidate.crank_deg;
@@ -47,7 +47,7 @@ impl Practicality {
         let radians: Vec<f64> = angles.iter().map(|deg| deg.to_radians()).collect();
         let verdict = judge(problem.task(), &candidate.linkage, &radians, &candidate.t1_at);
         let cycle = candidate.transmission_deg.over == TransmissionOver::Cycle;
-        let sweep = Sweep::of_motion(&verdict.motion, cycle);
+        let sweep = Sweep::of_motion(&verdict.motion, cycle)?;
         let felt = sensitivity_of(problem, candidate);
         let kind = problem.spec().task.kind();
         Some(Practicality { kind, ..Practicality::of(sweep, build, felt, true) })
@@ -81,9 +81,10 @@ impl At {
 }
 
 /// Returns the sensitivity of a candidate: of its path, or in a function of its output; `None` if no position has a
-/// derivative.
+/// derivative, or of a linkage with a slider.
 pub fn sensitivity_of(problem: &Problem, candidate: &Candidate) -> Option<Sensitivity> {
-    let (linkage, at, crank) = (&candidate.linkage, At::of_candidate(problem, candidate), crank_of(problem));
+    let linkage = candidate.linkage.four_bar()?;
+    let (at, crank) = (At::of_candidate(problem, candidate), crank_of(problem));
     match problem.task().body().filter(|_| problem.is_function()) {
         None => sensitivity(linkage, &at, crank),
         Some(output) => output_sensitivity(linkage, &at, crank, output.given_frame(0.0).is_none()),

@@ -83,9 +83,9 @@ impl Sweep {
     }
 
     /// Returns the motion through the points of a task. With `cycle` it is all of the circuit: the full turn, or both
-    /// branches of a rocking crank.
-    pub fn of_motion(motion: &UsedMotion, cycle: bool) -> Self {
-        let linkage = motion.on.linkage;
+    /// branches of a rocking crank. `None` of a linkage with a slider.
+    pub fn of_motion(motion: &UsedMotion, cycle: bool) -> Option<Self> {
+        let linkage = *motion.on.linkage.four_bar()?;
         let [low, high] = motion.range;
         let high = if cycle { low + TAU } else { high };
         let full_turn = motion.on.arc.is_none() && high - low >= TAU;
@@ -94,7 +94,7 @@ impl Sweep {
             Some(arc) => split(&arc, low, high),
             None => vec![Stretch { from: low, to, assembly: linkage.assembly() }],
         };
-        Sweep { linkage, stretches, full_turn }
+        Some(Sweep { linkage, stretches, full_turn })
     }
 
     /// Computes the joints in the middle of a stretch and the bounds of their distances from there; `None` if the loop

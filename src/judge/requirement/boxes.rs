@@ -14,7 +14,8 @@ fn inside(held: [f64; 4], limit: [f64; 4]) -> Finding {
 pub(super) fn pivots(judged: &Judged<'_>) -> Option<Finding> {
     let linkage = &judged.candidate.linkage;
     let region = judged.require().pivots_in.as_ref()?;
-    Some(both_inside(region, linkage.crank_pivot(), linkage.follower_pivot()))
+    let first = linkage.crank_pivot();
+    Some(both_inside(region, first, linkage.second_pivot().unwrap_or(first)))
 }
 
 /// The moving pins, in the frame of the body whose origin is P.
@@ -24,7 +25,9 @@ pub(super) fn pins(judged: &Judged<'_>) -> Option<Finding> {
     // The body's x axis as seen from the coupler, whose own runs from C to D.
     let axis = Complex::from_polar(1.0, judged.candidate.frame_deg?.to_radians());
     let from_origin = |along: f64| (Complex::new(along, 0.0) - linkage.coupler_offset()) / axis;
-    Some(both_inside(region, from_origin(0.0), from_origin(linkage.coupler())))
+    // A coupler that slides through its block has one pin, C.
+    let second = linkage.coupler().unwrap_or(0.0);
+    Some(both_inside(region, from_origin(0.0), from_origin(second)))
 }
 
 /// Returns whether a region holds two places: their box or, of a polygon, the distance from its boundary of the place that is

@@ -8,8 +8,9 @@ use crate::task::pivot_on::Locus;
 pub(super) fn judged(judged: &Judged<'_>) -> Option<Finding> {
     let pivot_on = judged.require().pivot_on.as_ref()?;
     let linkage = &judged.candidate.linkage;
-    let pivots = [linkage.crank_pivot(), linkage.follower_pivot()];
-    let distance = |(pivot, locus): (Complex, Option<&Locus>)| {
+    let pivots = [Some(linkage.crank_pivot()), linkage.second_pivot()];
+    let distance = |(pivot, locus): (Option<Complex>, Option<&Locus>)| {
+        let pivot = pivot?;
         let points = locus?.0.as_slice();
         let [x0, y0] = *points.first()?;
         let (x, y) = (pivot.re - x0, pivot.im - y0);

@@ -50,7 +50,8 @@ impl Comparison<'_> {
                 }
                 continue;
             }
-            let Some(class) = class_at(problem, &target, at) else {
+            let class = at.0.four_bar().and_then(|linkage| class_at(problem, &target, (linkage, at.1, at.2)));
+            let Some(class) = class else {
                 own.differ("the linkage", "one that passes all points", "not that");
                 continue;
             };
@@ -90,7 +91,7 @@ impl Comparison<'_> {
                 continue;
             };
             own.assembly(&other.linkage, &[found.linkage.assembly()]);
-            own.same("type", other.linkage_type, found.linkage_type);
+            own.same("type", other.type_name(), found.type_name());
             if *certain {
                 own.alike("defects", &other.defects, &found.defects);
             }
@@ -153,7 +154,7 @@ impl Comparison<'_> {
         let worst = found.transmission_deg.worst;
         self.transmission("transmission_worst_deg", listed.transmission_worst_deg, worst);
         self.number("link_ratio", listed.link_ratio, found.link_ratio, 1.0);
-        self.same("type", listed.linkage_type, found.linkage_type);
+        self.same("type", listed.type_name(), found.type_name());
         self.alike("defects", &listed.defects, &found.defects);
         self.verdict(found, listed.accepted, &listed.not_met);
     }

@@ -83,7 +83,7 @@ impl Comparison<'_> {
         self.number("link_ratio", recorded.link_ratio, found.link_ratio, 1.0);
         let worst = found.transmission_deg.worst;
         self.transmission("transmission_worst_deg", recorded.transmission_worst_deg, worst);
-        self.same("type", recorded.linkage_type, found.linkage_type);
+        self.same("type", recorded.type_name(), found.type_name());
         self.verdict(&found, recorded.accepted, &recorded.not_met);
         // The curve is the same if the coupler point is the same at every point of the target.
         let of_candidate = (&candidate.linkage, candidate.crank_deg.as_slice(), candidate.t1_at.as_slice());

@@ -17,7 +17,7 @@ use crate::judge::costs::{marginal, weighted_rms};
 use crate::judge::error::{StructuralError, structural_error};
 use crate::judge::loosen::Demand;
 use crate::judge::rank::{compare, exact_objective};
-use crate::mechanism::FourBar;
+use crate::mechanism::OneLoop;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::record::digest::{ProblemError, digest};
 use crate::record::{AngleErrorRecord, Candidate, Cost, CurveErrorRecord, FORMAT, MET_TOLERANCE, Record};
@@ -206,7 +206,7 @@ impl Comparison<'_> {
         self.transmission("transmission_deg.max", r.max, f.max);
         self.transmission("transmission_deg.worst", r.worst, f.worst);
         self.alike("transmission_deg.over", &r.over, &f.over);
-        self.same("type", recorded.linkage_type, found.linkage_type);
+        self.same("type", recorded.type_name(), found.type_name());
         let defects = |c: &Candidate| {
             let list: Vec<String> =
                 c.defects.iter().map(|d| format!("{} at {:?}", d.name(), d.at())).collect();
@@ -410,7 +410,7 @@ impl Comparison<'_> {
     }
 
     /// Checks that the crank angles are the prescribed ones, in whichever direction the timing lets them run.
-    fn timing(&mut self, linkage: &FourBar, crank_deg: &[f64], scale: f64) {
+    fn timing(&mut self, linkage: &OneLoop, crank_deg: &[f64], scale: f64) {
         let Timing::Prescribed { offset, .. } = self.problem.task().timing() else { return };
         let Some(written) = &self.problem.spec().task.timing else { return };
         let task = self.problem.task();

@@ -149,8 +149,11 @@ fn scene(linkage: &FourBar, closed: &[(&Row, [Complex; 5])], samples: usize) -> 
     if circuits.is_empty() {
         circuits = circuits_through(linkage, [middle_position(linkage)], samples);
     }
-    let pose = closed.first().map(|(_, joints)| Pose { target: None, joints: *joints });
-    Scene { linkage: Some(*linkage), targets: Vec::new(), circuits, pose }
+    let pose = closed.first().map(|(_, joints)| {
+        let [.., c, d, _] = *joints;
+        Pose { target: None, joints: *joints, coupler: d - c }
+    });
+    Scene { linkage: Some(linkage.into()), targets: Vec::new(), circuits, pose }
 }
 
 /// Draws A and B, if there is no position to draw.

@@ -1,9 +1,9 @@
 //! A comparison as CSV and JSON, for spreadsheets and scripts: every number to the last digit.
 
 use super::{Comparison, LeftOut, Ranked, SortKey};
-use crate::mechanism::{FourBar, Unit};
+use crate::mechanism::{OneLoop, Unit};
 use crate::record::{Candidate, Tool};
-use crate::report::csv::{Column, OF_MOTION, PARAMETERS, cells, figures, names, parameters, written};
+use crate::report::csv::{Column, OF_MOTION, cells, figures, names, parameters, parameters_of, written};
 use crate::report::text::{cell, exact};
 use crate::report::words;
 use crate::task::Defect;
@@ -103,7 +103,7 @@ struct Row<'a> {
     /// The motion over which the transmission angle is judged.
     transmission_over: &'static str,
     unit: Option<&'static str>,
-    linkage: &'a FourBar,
+    linkage: &'a OneLoop,
     /// The crank angle at each point, degrees.
     crank_deg: &'a [f64],
     defects: &'a [Defect],
@@ -157,7 +157,7 @@ impl<'a> Row<'a> {
                 .then(|| Figures(differences.collect())),
             max_at: candidate.error.max_at,
             frame_deg: candidate.frame_deg,
-            linkage_type: candidate.linkage_type.name(),
+            linkage_type: candidate.type_name(),
             transmission_over: words::over(candidate.transmission_deg.over),
             unit: entry.unit.map(Unit::label),
             linkage: &candidate.linkage,
@@ -184,7 +184,8 @@ impl Comparison {
         let differences: Vec<SortKey> =
             SortKey::ALL.into_iter().filter(|key| self.has_angles() || !key.is_of_motions()).collect();
         let head = names(&PLACE).chain(FIGURES).chain(["size", "extent"]).chain(names(of_motion));
-        let head = head.chain(names(&PARAMETERS));
+        let of_linkage = parameters_of(self.linkages());
+        let head = head.chain(names(&of_linkage));
         let mut head: Vec<String> = head.chain(["unit", "recorded_differently"]).map(str::to_owned).collect();
         if several {
             head.extend(self.keys.iter().map(|key| format!("rank_{}", key.name())));
@@ -198,7 +199,7 @@ impl Comparison {
             line.extend(figures(&entry.candidate, &FIGURES));
             line.extend([SortKey::Size, SortKey::Extent].map(|key| number(row.figure_of(key))));
             line.extend(cells(of_motion, &entry.candidate));
-            line.extend(parameters(&entry.candidate.linkage));
+            line.extend(parameters(&of_linkage, &entry.candidate.linkage));
             line.push(entry.unit.map_or(String::new(), |unit| unit.label().to_owned()));
             line.push(cell(&entry.untrue.join("; ")));
             if several {

@@ -9,7 +9,7 @@
 
 use super::scene::{Bounds, SAMPLES, circuits};
 use super::text::clean;
-use crate::mechanism::Unit;
+use crate::mechanism::{OneLoop, Unit};
 use crate::record::Candidate;
 use crate::task::TaskKind;
 use crate::task::spec::{BodySpec, Measure};
@@ -87,8 +87,7 @@ impl Entry {
         if bounds.width() == 0.0 && bounds.height() == 0.0 {
             return f64::NAN;
         }
-        bounds.hold(self.candidate.linkage.crank_pivot());
-        bounds.hold(self.candidate.linkage.follower_pivot());
+        self.candidate.linkage.pivots().for_each(|pivot| bounds.hold(pivot));
         bounds.diagonal()
     }
 
@@ -289,6 +288,11 @@ pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) ->
 }
 
 impl Comparison {
+    /// Iterates over the linkages, best first.
+    fn linkages(&self) -> impl Iterator<Item = &OneLoop> {
+        self.rows.iter().map(|row| &row.entry.candidate.linkage)
+    }
+
     /// Returns whether all errors are measured to the same target.
     pub fn same_target(&self) -> bool {
         self.rows.windows(2).all(|w| w[0].entry.has_target_of(&w[1].entry))

@@ -211,11 +211,11 @@ impl Comparison {
     fn bounds(&self) -> Bounds {
         let reached = |row: &Ranked| {
             let linkage = &row.entry.candidate.linkage;
-            let circles =
-                [(linkage.crank_pivot(), linkage.crank()), (linkage.follower_pivot(), linkage.follower())];
+            let follower = linkage.four_bar().map(|l| (l.follower_pivot(), l.follower()));
+            let circles = [(linkage.crank_pivot(), linkage.crank())].into_iter().chain(follower);
             let is_drawn = !row.entry.pairs.is_empty();
             let ends = circles.map(|(pivot, r)| [pivot - Complex::new(r, r), pivot + Complex::new(r, r)]);
-            ends.into_iter().flatten().filter(move |_| is_drawn)
+            ends.flatten().filter(move |_| is_drawn)
         };
         let targets = self.rows.iter().flat_map(|row| &row.entry.target).map(|p| point(*p));
         Bounds::of(targets.chain(self.rows.iter().flat_map(reached)))

@@ -1,8 +1,8 @@
 //! A comparison as text tables for a terminal.
 
 use super::{Comparison, Ranked, SortKey};
-use crate::mechanism::FourBar;
-use crate::report::csv::{Column, PARAMETERS};
+use crate::mechanism::OneLoop;
+use crate::report::csv::{Parameter, names, parameters_of};
 use crate::report::grid::Align::{Left, Right};
 use crate::report::grid::{Colour, Grid, Ink, plain, verdict};
 use crate::report::text::{COLUMNS, NO_NUMBER, clean, columns_of, indented, shortened_in_front, significant};
@@ -161,29 +161,30 @@ impl Comparison {
     }
 
     fn parameters(&self, colour: Colour) -> String {
-        let heads = PARAMETERS.map(|(name, _)| name);
+        let of_linkage = parameters_of(self.linkages());
+        let heads: Vec<&str> = names(&of_linkage).collect();
         let mut grid = Grid::new(&[(Left, &["#", "type"]), (Right, &heads)]);
         for row in &self.rows {
             let linkage = &row.entry.candidate.linkage;
-            let kind = row.entry.candidate.linkage_type.name();
+            let kind = row.entry.candidate.type_name();
             let shown = |column| plain(parameter(column, linkage, |x| significant(x, 4)).1);
             grid.row(
                 [(row.rank.to_string(), Ink::Strong), plain(kind)]
                     .into_iter()
-                    .chain(PARAMETERS.iter().map(shown)),
+                    .chain(of_linkage.iter().map(shown)),
             );
         }
         grid.render(colour)
     }
 }
 
-/// Returns a parameter of a linkage with its text; signs are `+1` or `-1`.
+/// Returns a parameter of a linkage with its text; signs are `+1` or `-1`. NaN and no text where the kind has none.
 pub(super) fn parameter(
-    (name, of): &Column<FourBar, f64>,
-    linkage: &FourBar,
+    (name, of): &Parameter,
+    linkage: &OneLoop,
     length: impl Fn(f64) -> String,
 ) -> (f64, String) {
-    let value = of(linkage);
+    let Some(value) = of(linkage) else { return (f64::NAN, String::new()) };
     (value, if name.starts_with('t') { format!("{value:+}") } else { length(value) })
 }
 

@@ -36,10 +36,13 @@ pub use settings::{Refusal, Settings};
 pub use subject::Subject;
 
 use crate::files::linkage_file;
+use crate::mechanism::OneLoop;
+use crate::mechanism::analysis::driven::{MechanismRequest, analyze_mechanism};
 use crate::mechanism::analysis::{Request, analyze, full_turn};
 use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::record::Tool;
 use crate::report::analysis_csv::analysis_csv;
+use crate::report::mechanism_text::mechanism_csv;
 use crate::report::text::exact;
 use model::Model;
 
@@ -89,7 +92,7 @@ fn in_millimetres(model: &Model<'_>, format: Format) -> Result<Vec<u8>, Refusal>
 
 /// Writes a subject in one of the formats that keep the file's own unit.
 fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Exported, Refusal> {
-    let linkage = model::scaled(&subject.linkage, settings.scale())?;
+    let linkage = model::scaled_loop(&subject.linkage, settings.scale())?;
     let unit = model::unit_of(subject, settings)?;
     let mut notes = Vec::new();
     let text = match format {
@@ -98,19 +101,31 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
                 notes.push("omega_rad_s = 1: velocities are those at 1 rad/s".to_owned());
                 1.0
             });
-            let request = Request {
-                name: subject.name.clone(),
-                unit,
-                linkage,
-                crank_deg: full_turn(settings.positions()),
-                input: CrankMotion::steady(speed_rad_s),
-                methods: Vec::new(),
-                all_configurations: false,
-            };
+            let (name, input) = (subject.name.clone(), CrankMotion::steady(speed_rad_s));
+            let crank_deg = full_turn(settings.positions());
             notes.extend(
                 subject.frame_deg.map(|deg| format!("the body's angle is coupler_deg + {}", exact(deg))),
             );
-            analysis_csv(&analyze(&request))
+            match linkage {
+                OneLoop::FourBar(linkage) => {
+                    let methods = Vec::new();
+                    let all_configurations = false;
+                    analysis_csv(&analyze(&Request {
+                        name,
+                        unit,
+                        linkage,
+                        crank_deg,
+                        input,
+                        methods,
+                        all_configurations,
+                    }))
+                }
+                OneLoop::SliderCrank(_) | OneLoop::InvertedSliderCrank(_) => {
+                    let linkage = linkage.into();
+                    let request = MechanismRequest { name, unit, linkage, crank_deg, input };
+                    mechanism_csv(&analyze_mechanism(&request))
+                }
+            }
         }
         Format::Toml => linkage_file::to_toml_with(&subject.legal_name(), unit, &linkage, subject.carried),
         _ => {

@@ -3,9 +3,9 @@
 use super::holes::Holes;
 use super::settings::{Refusal, Settings};
 use super::{Format, Subject};
-use crate::mechanism::Unit;
 use crate::mechanism::plates::{Link, Placement, Plate};
-use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints, point};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints, LinkageError, point};
+use crate::mechanism::{OneLoop, Unit};
 use crate::report::body;
 use crate::report::scene::{Bounds, circuits_through, middle_position};
 use crate::report::text::{brief, exact};
@@ -65,7 +65,8 @@ impl<'a> Model<'a> {
             assumed.push(("unit", "no unit is given: 1 in the file is 1 mm".to_owned()));
         }
         let mm_per_unit = settings.scale() * unit.map_or(1.0, |unit| unit.factor_to(Unit::Mm));
-        let linkage = scaled(&subject.linkage, mm_per_unit)?;
+        let Some(linkage) = subject.linkage.four_bar() else { return Err(no_plates(&subject.linkage)) };
+        let linkage = scaled(linkage, mm_per_unit)?;
         let longest = longest(&linkage);
         if !LONGEST_MM.contains(&longest) {
             return Err(Refusal::about(
@@ -308,13 +309,27 @@ pub(super) fn unit_of(subject: &Subject, settings: &Settings) -> Result<Option<U
 }
 
 /// Returns a linkage with all lengths multiplied by a factor.
+pub(super) fn scaled_loop(linkage: &OneLoop, factor: f64) -> Result<OneLoop, Refusal> {
+    linkage.scaled(factor).map_err(|e| too_large(&e, factor))
+}
+
+/// Returns the refusal of a kind that is not drawn or cut yet.
+fn no_plates(linkage: &OneLoop) -> Refusal {
+    let kind = linkage.kind().name();
+    let message =
+        format!("a {kind} is exported as toml, json or csv alone: drawings and plates are of four-bars");
+    Refusal::new(message, "choose one of those formats; linkwright analyze draws it (--plot)")
+}
+
 pub(super) fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, Refusal> {
-    linkage.scaled(factor).map_err(|e| {
-        Refusal::new(
-            format!("scaled {} times, this is no linkage: {e}", exact(factor)),
-            "choose another scale",
-        )
-    })
+    linkage.scaled(factor).map_err(|e| too_large(&e, factor))
+}
+
+fn too_large(error: &LinkageError, factor: f64) -> Refusal {
+    Refusal::new(
+        format!("scaled {} times, this is no linkage: {error}", exact(factor)),
+        "choose another scale",
+    )
 }
 
 fn longest(linkage: &FourBar) -> f64 {

@@ -2,8 +2,8 @@
 
 use crate::files::linkage_file::{Carried, LinkageFile};
 use crate::files::name;
-use crate::mechanism::Unit;
-use crate::mechanism::{AssemblyMode, FourBar};
+use crate::mechanism::AssemblyMode;
+use crate::mechanism::{OneLoop, Unit};
 use crate::record::{Candidate, Record};
 use crate::report::scene::positions_at;
 use crate::report::text::clean;
@@ -19,7 +19,7 @@ pub struct Subject {
     /// The unit of its lengths.
     pub unit: Option<Unit>,
     /// The linkage.
-    pub linkage: FourBar,
+    pub linkage: OneLoop,
     /// The target points; empty without a run.
     pub target: Vec<[f64; 2]>,
     /// Whether the target is a closed curve.
@@ -64,7 +64,7 @@ impl Subject {
             name: file.name.clone(),
             standing: "a linkage file".to_owned(),
             unit: file.unit,
-            linkage: file.linkage,
+            linkage: file.linkage.into(),
             target: Vec::new(),
             closed: false,
             positions: Vec::new(),

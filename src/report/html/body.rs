@@ -110,7 +110,7 @@ fn verdict(record: &Record) -> String {
     let figures = |c: &Candidate| {
         format!(
             "{}, rms error {}{unit}, largest {}{unit} at {noun} {}{}, worst transmission angle {}°",
-            c.linkage_type.name(),
+            c.type_name(),
             significant(c.error.rms, 4),
             significant(c.error.max, 4),
             c.error.max_at,

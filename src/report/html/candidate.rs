@@ -120,7 +120,7 @@ fn alternatives(c: &Candidate, key: &str) -> Markup {
         if a.accepted { "accepted".to_owned() } else { format!("not: {}", not_met.join(", ")) }
     };
     let columns: [Column<&Alternative>; 4] = [
-        ("type", false, &|a| Cell::words(a.linkage_type.name())),
+        ("type", false, &|a| Cell::words(a.type_name())),
         ("transmission", true, &|a| Cell::degrees(a.transmission_worst_deg)),
         ("ratio", true, &|a| Cell::figure(a.link_ratio, 3)),
         ("verdict", false, &|a| Cell::verdict(verdict(a), a.accepted)),

@@ -3,9 +3,9 @@
 use super::data::MOST_ALTERNATIVES;
 use super::page::paragraph;
 use super::table::minus;
-use crate::files::linkage_file::to_toml;
-use crate::mechanism::FourBar;
+use crate::files::linkage_file::any_to_toml;
 use crate::mechanism::Unit;
+use crate::mechanism::{LoopKind, OneLoop};
 use crate::record::{Candidate, Record};
 use crate::report::text::{clean, significant};
 use crate::report::words;
@@ -20,10 +20,17 @@ pub(super) fn dimensions(record: &Record, c: &Candidate, short: &str) -> Markup 
     let unit = words::unit_suffix(record);
     let offset = c.linkage.coupler_offset();
     let [ground, along, across] =
-        [c.linkage.ground(), offset.re, offset.im].map(|value| minus(&significant(value, 6)));
-    let text = format!(
-        "Ground AB {ground}{unit}; P lies {along}{unit} along and {across}{unit} across from C to D (positive: to the left).",
-    );
+        [c.linkage.ground().unwrap_or(0.0), offset.re, offset.im].map(|value| minus(&significant(value, 6)));
+    let place = format!("P lies {along}{unit} along and {across}{unit} across");
+    let text = match c.linkage.kind() {
+        LoopKind::FourBar => {
+            format!("Ground AB {ground}{unit}; {place} from C to D (positive: to the left).")
+        }
+        LoopKind::SliderCrank => format!("{place} from C to D (positive: to the left)."),
+        LoopKind::InvertedSliderCrank => {
+            format!("Ground AB {ground}{unit}; {place} from C, along the rod (positive: to the left).")
+        }
+    };
     let body = c.frame_deg.map(|frame_deg| {
         format!(
             "The body: P is its origin; its x axis lies {}° from the line from C to D (positive: counter-clockwise).",
@@ -55,8 +62,8 @@ pub(super) fn of_alternatives(c: &Candidate) -> Markup {
     }
 }
 
-fn block(name: &str, unit: Option<Unit>, linkage: &FourBar) -> Markup {
-    html! { pre.dimensions { (without_comments(&to_toml(name, unit, linkage))) } }
+fn block(name: &str, unit: Option<Unit>, linkage: &OneLoop) -> Markup {
+    html! { pre.dimensions { (without_comments(&any_to_toml(name, unit, linkage))) } }
 }
 
 /// Returns the file without its comments: the drawing on the page explains the letters.

@@ -30,7 +30,7 @@ fn table(record: &Record, linkages: &[ExactLinkage]) -> Markup {
             rank => Cell::number(rank as f64, format!("#{rank}")),
         }),
         ("the curve can be", false, &|x| Cell::words(ability(x))),
-        ("type", false, &|x| Cell::words(x.linkage_type.name())),
+        ("type", false, &|x| Cell::words(x.type_name())),
         ("defects", false, &|x| Cell::words(defects(x))),
         ("transmission", true, &|x| Cell::degrees(x.transmission_worst_deg)),
         ("link ratio", true, &|x| Cell::figure(x.link_ratio, 3)),

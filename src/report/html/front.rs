@@ -102,7 +102,7 @@ fn members(record: &Record, front: &Front) -> Markup {
         ("longest length", true, &|m| Cell::figure(m.figures.longest, 4)),
         ("link ratio", true, &|m| Cell::figure(m.figures.link_ratio, 3)),
         ("sensitivity", true, &|m| Cell::figure(m.figures.sensitivity, 3)),
-        ("type", false, &|m| Cell::words(m.candidate.linkage_type.name())),
+        ("type", false, &|m| Cell::words(m.candidate.type_name())),
         ("", false, &|m| Cell { class: Some("knee"), ..Cell::words(if m.knee { "knee" } else { "" }) }),
     ];
     let heads: Vec<(&str, bool)> =
@@ -143,7 +143,7 @@ fn drawings(record: &Record, front: &Front) -> Markup {
                 li id={ "linkage-" (n) } {
                     (thumbnail(&thumbnail_svg(record, &member.candidate, &title)))
                     h3 {
-                        (title) " " small { (member.candidate.linkage_type.name()) }
+                        (title) " " small { (member.candidate.type_name()) }
                         @if member.knee { " " small.knee { "knee" } }
                     }
                     (figures(record, [f.rms, f.max], f.transmission_deg, [Some(f.extent), Some(f.longest)]))

@@ -40,7 +40,19 @@ pub(super) fn mobility(record: &Record, c: &Candidate) -> Markup {
 }
 
 fn of_type(c: &Candidate) -> String {
-    let words = match c.linkage_type {
+    let Some(linkage_type) = c.linkage_type else {
+        let kind = capitalised(
+            &c.type_name()
+                .replacen("slider-crank", "slider\u{2011}crank", 1)
+                .replace("inverted-", "inverted "),
+        );
+        let turns = if c.linkage.mobility().input_turns_fully() { "turns fully" } else { "rocks" };
+        return format!(
+            "{kind}: the crank {turns} (margin of a full turn {}).",
+            significant(c.grashof_margin, 3)
+        );
+    };
+    let words = match linkage_type {
         LinkageType::CrankRocker => "Crank-rocker: the crank turns fully, the follower rocks",
         LinkageType::RockerCrank => "Rocker-crank: the driven link A-C rocks, the follower B-D turns fully",
         LinkageType::DoubleCrank => "Double-crank: crank and follower both turn fully",

@@ -3,7 +3,6 @@
 use super::Extent;
 use super::page::{paragraph, section};
 use super::table::minus;
-use crate::judge::figures::longest;
 use crate::record::{Candidate, Pick, Record};
 use crate::report::contact_sheet::thumbnail_svg;
 use crate::report::picks::{extent_of, within};
@@ -54,7 +53,7 @@ impl Card<'_> {
             li {
                 @if let Some(drawn) = drawn { (thumbnail(&drawn)) }
                 h3 { (title) " " small { (place) } }
-                (figures(record, [c.error.rms, c.error.max], c.transmission_deg.worst, [size, Some(longest(&c.linkage))]))
+                (figures(record, [c.error.rms, c.error.max], c.transmission_deg.worst, [size, Some(c.linkage.longest())]))
             }
         }
     }

@@ -41,7 +41,8 @@ const NOTES: &str = "linkwright build RESULT says the same of other candidates, 
 
 fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<Markup> {
     let unit = record.problem.unit;
-    let hole = Build::usual_hole(&c.linkage, unit);
+    let linkage = c.linkage.four_bar()?;
+    let hole = Build::usual_hole(linkage, unit);
     let found = Practicality::of_candidate(problem, c, Build::new(hole, hole))?;
     let words = Words { unit, colour: Colour::Never };
     let title = match c.rank {
@@ -58,7 +59,7 @@ fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<Markup> 
         @if let Some(distances) = &found.distances { (joints(distances, hole)) }
         @if let Some(felt) = &found.sensitivity {
             (sensitivities(felt, found.kind))
-            (paragraph("", &words.together(felt, &found, usual_tolerance(&c.linkage, unit))))
+            (paragraph("", &words.together(felt, &found, usual_tolerance(linkage, unit))))
         }
         (paragraph("notes", NOTES))
     })

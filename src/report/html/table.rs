@@ -146,7 +146,7 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         ("crank from", true, &|c| from(c.input_offset_deg, c.input_range_deg)),
         ("follower from", true, &|c| from(c.output_offset_deg, c.output_range_deg)),
         ("to curve", true, &|c| Cell::figure(c.error.to_curve.rms, 4)),
-        ("type", false, &|c| Cell::words(c.linkage_type.name())),
+        ("type", false, &|c| Cell::words(c.type_name())),
         ("transmission", true, &|c| Cell::degrees(c.transmission_deg.worst)),
         ("over", false, &|c| Cell::words(over(c.transmission_deg.over))),
         ("link ratio", true, &|c| Cell::figure(c.link_ratio, 3)),

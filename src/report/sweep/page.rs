@@ -78,7 +78,7 @@ type Column = (&'static str, fn(&Best) -> Cell);
 const FIGURES: [Column; 7] = [
     ("rms error", |b| Cell::figure(b.error.rms, 4)),
     ("largest", |b| Cell::figure(b.error.max, 4)),
-    ("type", |b| Cell::words(b.linkage_type.name())),
+    ("type", |b| Cell::words(b.type_name())),
     ("transmission", |b| {
         Cell::number(b.transmission_worst_deg, format!("{}°", significant(b.transmission_worst_deg, 3)))
     }),

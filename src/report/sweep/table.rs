@@ -3,7 +3,7 @@
 
 use crate::files::sweep_file::typed;
 use crate::record::sweep::{Best, Plan, Row};
-use crate::report::csv::{Column, PARAMETERS, names, parameters, written_row};
+use crate::report::csv::{Column, OF_SLIDERS, PARAMETERS, Parameter, names, parameters, written_row};
 use crate::report::text::{cell, exact};
 use crate::report::words;
 use serde_json::Value;
@@ -16,7 +16,7 @@ const FIGURES: [Column<Best>; 11] = [
     ("max_at", |b| b.error.max_at.to_string()),
     ("rms_over_size", |b| exact(b.error.rms_over_size)),
     ("objective", |b| exact(b.error.objective)),
-    ("type", |b| b.linkage_type.name().to_owned()),
+    ("type", |b| b.type_name().to_owned()),
     ("transmission_worst_deg", |b| exact(b.transmission_worst_deg)),
     ("link_ratio", |b| exact(b.link_ratio)),
     ("extent", |b| exact(b.extent)),
@@ -27,10 +27,17 @@ const FIGURES: [Column<Best>; 11] = [
 pub fn head(plan: &Plan) -> String {
     let mut cells = vec!["job".to_owned()];
     cells.extend(plan.vary.iter().map(|varied| cell(&varied.key)));
+    let of_linkage = parameters_in(plan);
     let outcome = ["status", "termination", "candidates", "accepted", "evaluations"];
-    let rest = outcome.into_iter().chain(names(&FIGURES)).chain(names(&PARAMETERS)).chain(["message"]);
+    let rest = outcome.into_iter().chain(names(&FIGURES)).chain(names(&of_linkage)).chain(["message"]);
     cells.extend(rest.map(str::to_owned));
     written_row(&cells)
+}
+
+/// Returns the parameters in a sweep's table: those of sliders too where its problem names such a mechanism.
+fn parameters_in(plan: &Plan) -> Vec<Parameter> {
+    let of_sliders = plan.problem.text.contains("slider-crank");
+    PARAMETERS.into_iter().chain(OF_SLIDERS.into_iter().filter(|_| of_sliders)).collect()
 }
 
 /// Returns the line of a row; cells of what a job has not are empty.
@@ -42,12 +49,13 @@ pub fn line_of<R>(plan: &Plan, row: &Row<R>) -> String {
     let ran = row.termination.is_some();
     let counts = [row.candidates as u64, row.accepted as u64, row.evaluations];
     cells.extend(counts.map(|count| if ran { count.to_string() } else { String::new() }));
+    let of_linkage = parameters_in(plan);
     match &row.best {
         Some(best) => {
             cells.extend(FIGURES.map(|(_, figure)| figure(best)));
-            cells.extend(parameters(&best.linkage));
+            cells.extend(parameters(&of_linkage, &best.linkage));
         }
-        None => cells.extend(vec![String::new(); FIGURES.len() + PARAMETERS.len()]),
+        None => cells.extend(vec![String::new(); FIGURES.len() + of_linkage.len()]),
     }
     cells.push(row.message.as_deref().map_or(String::new(), cell));
     written_row(&cells)

@@ -139,7 +139,7 @@ fn placed(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
     if candidate.crank_deg.len() == problem.task().len() {
         return Some(candidate.clone());
     }
-    let (crank_deg, t1_at) = nearest_positions(problem, &candidate.linkage)?;
+    let (crank_deg, t1_at) = nearest_positions(problem, candidate.linkage.four_bar()?)?;
     Some(Candidate { crank_deg, t1_at, ..candidate.clone() })
 }
 
@@ -230,7 +230,7 @@ mod tests {
         let found = searched(&problem);
         let linkage = found[0].linkage.scaled(1.01).expect("a linkage");
         let mut session = Session::default();
-        session.begin(&problem, &linkage);
+        session.begin(&problem, linkage.four_bar().expect("a four-bar"));
         let before = session.candidates()[0].error.sum_sq;
         let after = session.follow(&problem, &Budget::new(&cancel, None))[0].error.sum_sq;
         assert!(after < before, "{after} {before}");

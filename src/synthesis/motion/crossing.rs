@@ -10,7 +10,7 @@
 //! its slopes, n the direction from the pivot G to X. The least such v that meets both dyads has the square F' (B B')^-1 F.
 
 use super::starts::DyadStarts;
-use crate::mechanism::{AssemblyMode, Complex, Dyad, Pose, dot, turned};
+use crate::mechanism::{AssemblyMode, Complex, Dyad, LoopJoints, Pose, dot, turned};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::record::Candidate;
 use crate::synthesis::constants::motion::{
@@ -77,7 +77,7 @@ impl DyadStarts<'_> {
 
 /// Returns the two dyads of a candidate.
 fn dyads_of(candidate: &Candidate) -> Option<[Dyad; 2]> {
-    let shape = Shape::from(&candidate.linkage);
+    let shape = Shape::from(candidate.linkage.four_bar()?);
     // The direction C -> D in the body's frame, along which the pins are at -Z and b - Z.
     let along = Complex::from_polar(1.0, -candidate.frame_deg?.to_radians());
     let dyad = |at: Complex, pivot, length| Dyad::RR { pin: at * along, pivot, length };
@@ -91,8 +91,7 @@ fn dyads_of(candidate: &Candidate) -> Option<[Dyad; 2]> {
 fn poses_of(candidate: &Candidate) -> Option<Vec<Pose>> {
     let frame = candidate.frame_deg?.to_radians();
     let pose = |(deg, assembly): (&f64, &AssemblyMode)| {
-        let joints = candidate.linkage.position_with(deg.to_radians(), *assembly).joints()?;
-        let coupler = joints.follower_pin - joints.crank_pin;
+        let LoopJoints { joints, coupler } = candidate.linkage.joints_with(deg.to_radians(), *assembly)?;
         Some(Pose::new(joints.coupler_point, coupler.arg() + frame))
     };
     candidate.crank_deg.iter().zip(&candidate.t1_at).map(pose).collect()

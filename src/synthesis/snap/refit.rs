@@ -3,7 +3,7 @@
 use crate::judge::assess::assess;
 use crate::judge::rank::compare;
 use crate::judge::warm::start_at;
-use crate::mechanism::{FourBar, NaturalCoordinates, point, xy};
+use crate::mechanism::{FourBar, NaturalCoordinates, OneLoop, point, xy};
 use crate::record::Candidate;
 use crate::synthesis::Context;
 use crate::synthesis::multistart::judged;
@@ -57,9 +57,9 @@ impl Length {
         Length::ALL.into_iter().find(|length| length.key() == key)
     }
 
-    /// Returns its value in a linkage.
-    pub fn of(self, linkage: &FourBar) -> f64 {
-        (self.entry().1)(linkage)
+    /// Returns its value in a four-bar; NaN of another kind, whose lengths are not snapped.
+    pub fn of(self, linkage: impl Into<OneLoop>) -> f64 {
+        linkage.into().four_bar().map_or(f64::NAN, self.entry().1)
     }
 
     /// Returns the problem's limits for it; from 0 to infinity if there are none.
@@ -146,7 +146,8 @@ pub fn refit(
     let (mut found, mut used) = fit(context, candidate, fixed, (polar, evaluations));
     if found.is_none() && held && fixed.crank_pivot.is_none() {
         // Then with A fixed at its start on its circle.
-        if let Some(linkage) = on_its_circle(&candidate.linkage, fixed) {
+        if let Some(linkage) = candidate.linkage.four_bar().and_then(|linkage| on_its_circle(linkage, fixed))
+        {
             let still = Fixed { crank_pivot: Some(xy(linkage.crank_pivot())), ..fixed.clone() };
             let (there, more) = fit(context, candidate, &still, (polar, evaluations));
             (found, used) = (there, used + more);
@@ -176,13 +177,16 @@ fn fit(
     let Ok(narrowed) = Problem::new(spec) else { return (None, 0) };
     // If A moves on a circle around a fixed B, the fit has to begin at the right distance: that is a condition, not a
     // coordinate of the design.
-    let moved = on_its_circle(&candidate.linkage, fixed)
+    let moved = candidate
+        .linkage
+        .four_bar()
+        .and_then(|linkage| on_its_circle(linkage, fixed))
         .filter(|_| !polar)
         .and_then(|linkage| assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at));
     let Some(start) = start_at(&narrowed, moved.as_ref().unwrap_or(candidate)) else { return (None, 0) };
     let fitted = finish(context.of(&narrowed), &start, evaluations);
     let found = fitted.end.and_then(|end| judged(&narrowed, &end)).and_then(|found| {
-        let linkage = to_the_digit(&found.linkage, fixed)?;
+        let linkage = to_the_digit(found.linkage.four_bar()?, fixed)?;
         assess(problem, &linkage, &found.crank_deg, &found.t1_at)
     });
     (found, fitted.evaluations)

@@ -88,7 +88,8 @@ fn the_plain_checks_see_what_is_wrong() {
             true
         }),
         ("the other assembly at a point", |spec, c| {
-            let margin = c.linkage.transmission_over_cycle().worst().to_degrees();
+            let margin =
+                c.linkage.four_bar().expect("a four-bar").transmission_over_cycle().worst().to_degrees();
             let last = c.t1_at.len() - 1;
             c.t1_at[last] = c.t1_at[last].opposite();
             spec.require.branch == OnePolicy::One && spec.require.circuit == OnePolicy::One && margin > 5.0
@@ -110,7 +111,7 @@ fn the_plain_checks_see_what_is_wrong() {
             true
         }),
         ("another type", |spec, c| {
-            spec.require.types = vec![one_more(c.linkage_type)];
+            spec.require.types = vec![one_more(c.linkage_type.expect("a type"))];
             c.grashof_margin.abs() > 0.01 * c.linkage.longest_link()
         }),
         ("a pivot outside its box", |spec, c| {
@@ -119,19 +120,29 @@ fn the_plain_checks_see_what_is_wrong() {
             true
         }),
         ("a joint outside the footprint", |spec, c| {
-            let p = c.linkage.position_with(c.crank_deg[0].to_radians(), c.t1_at[0]).joints();
+            let p = c
+                .linkage
+                .four_bar()
+                .expect("a four-bar")
+                .position_with(c.crank_deg[0].to_radians(), c.t1_at[0])
+                .joints();
             let x = p.map_or(0.0, |p| p.coupler_point.re);
             spec.require.footprint_in = Some([x + beyond(x), -1e12, 1e12, 1e12]);
             true
         }),
         ("a link that is too long", |spec, c| {
-            let l = &c.linkage;
+            let l = c.linkage.four_bar().expect("a four-bar");
             spec.require.longest_max =
                 Some(0.99 * l.longest_link().max(l.crank_side()).max(l.follower_side()));
             true
         }),
         ("too large an extent", |spec, c| {
-            let joints = c.linkage.position_with(c.crank_deg[0].to_radians(), c.t1_at[0]).joints();
+            let joints = c
+                .linkage
+                .four_bar()
+                .expect("a four-bar")
+                .position_with(c.crank_deg[0].to_radians(), c.t1_at[0])
+                .joints();
             let reach = joints.map_or(0.0, |j| (j.coupler_point - c.linkage.crank_pivot()).norm());
             spec.require.extent_max = Some(0.99 * reach);
             // The box is measured along a motion on one branch.
@@ -146,7 +157,11 @@ fn the_plain_checks_see_what_is_wrong() {
                     && spec.require.order == OrderPolicy::Required
         }),
         ("a length outside its bounds", |spec, c| {
-            spec.design.b = Some(Limits(0.0, c.linkage.coupler() - beyond(c.linkage.coupler())));
+            spec.design.b = Some(Limits(
+                0.0,
+                c.linkage.four_bar().expect("a four-bar").coupler()
+                    - beyond(c.linkage.four_bar().expect("a four-bar").coupler()),
+            ));
             true
         }),
         ("a tolerance exceeded", |spec, c| {
@@ -157,7 +172,7 @@ fn the_plain_checks_see_what_is_wrong() {
             let [first, .., last] = c.crank_deg[..] else { return false };
             let rises = last >= first;
             spec.require.direction = if rises { DirectionPolicy::Cw } else { DirectionPolicy::Ccw };
-            let plain = c.linkage_type.input_turns_fully() && (last - first).abs() > 1.0;
+            let plain = c.linkage_type.expect("a type").input_turns_fully() && (last - first).abs() > 1.0;
             let whole = spec.task.points.first() == spec.task.points.last();
             let one = spec.require.branch == OnePolicy::One && spec.require.circuit == OnePolicy::One;
             plain

@@ -83,7 +83,7 @@ impl Look<'_> {
     }
 
     fn linkage(&self) -> &FourBar {
-        &self.candidate.linkage
+        self.candidate.linkage.four_bar().expect("a four-bar")
     }
 
     /// The joints at an angle (degrees), if the loop closes.
@@ -230,8 +230,8 @@ impl Look<'_> {
             if !types.is_empty() && !types.contains(&kind) {
                 self.say(format!("a {kind}, which is not asked for"));
             }
-            if kind != self.candidate.linkage_type {
-                self.say(format!("a {kind}, recorded as a {}", self.candidate.linkage_type));
+            if kind != self.candidate.linkage_type.expect("a type") {
+                self.say(format!("a {kind}, recorded as a {}", self.candidate.linkage_type.expect("a type")));
             }
         }
     }
@@ -347,8 +347,10 @@ impl Look<'_> {
                 }
             }
         }
-        let turns =
-            matches!(self.candidate.linkage_type, LinkageType::CrankRocker | LinkageType::DoubleCrank);
+        let turns = matches!(
+            self.candidate.linkage_type.expect("a type"),
+            LinkageType::CrankRocker | LinkageType::DoubleCrank
+        );
         let over = require.transmission_over.unwrap_or(if turns {
             TransmissionOver::Cycle
         } else {

@@ -61,7 +61,7 @@ fn dxf_numbers_read_back_to_the_same_digits_on_named_layers() {
         let on = |layer: &str, kind: &str| -> Vec<_> {
             entities.iter().filter(|e| e.1 == layer && e.0 == kind).map(|e| &e.2).collect()
         };
-        let n = subject.linkage.natural_coordinates();
+        let n = subject.linkage.four_bar().expect("a four-bar").natural_coordinates();
         let scaled = FourBar::new(NaturalCoordinates {
             crank_pivot: n.crank_pivot.map(|x| x * factor),
             follower_pivot: n.follower_pivot.map(|x| x * factor),

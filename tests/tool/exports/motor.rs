@@ -37,7 +37,7 @@ fn plates(subject: &Subject) -> Vec<Plate> {
         holes.iter_mut().for_each(|hole| hole.at *= factor);
         Plate::new(plate.link, holes, radius)
     };
-    Plate::all(&subject.linkage, 0.0).map(plate).to_vec()
+    Plate::all(subject.linkage.four_bar().expect("a four-bar"), 0.0).map(plate).to_vec()
 }
 
 #[test]
@@ -107,7 +107,10 @@ fn the_holes_of_a_motor_are_in_every_drawing_with_plates_as_wide_as_they_need() 
         assert!(scad.contains("\nmotor_hole = 0.7;") && scad.contains("\nboss_hole = 1.6;"), "{scad}");
         let list = text(&subject, Format::CutList, &SET);
         assert!(list.contains(", at A 0.7 mm in the crank and 1.6 mm in the ground,"), "{list}");
-        assert!(list.contains(" 3 pins ") != (subject.linkage.ground() == 0.0), "{list}");
+        assert!(
+            list.contains(" 3 pins ") != (subject.linkage.four_bar().expect("a four-bar").ground() == 0.0),
+            "{list}"
+        );
         // The boss is as wide as the shaft where nothing else is said, and what is not set follows the others.
         let shaft = text(&subject, Format::CutList, &SET[..2]);
         assert!(shaft.contains(", at A 0.7 mm in the crank and 0.7 mm in the ground,"), "{shaft}");

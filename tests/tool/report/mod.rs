@@ -389,7 +389,8 @@ fn lists_of_the_wrong_length_and_numbers_that_are_none_do_not_panic() {
 #[test]
 fn links_that_cannot_be_joined_are_not_drawn_joined() {
     let mut record = k18();
-    record.candidates[0].linkage = records::linkage([0.0, 0.0], [10.0, 0.0], [1.0, 1.0, 1.0, 1.0, 1.0], 1, 1);
+    record.candidates[0].linkage =
+        records::linkage([0.0, 0.0], [10.0, 0.0], [1.0, 1.0, 1.0, 1.0, 1.0], 1, 1).into();
     let svg = candidate_svg(&record, 0);
     parsed(&svg);
     assert!(svg.contains("cannot be joined"));
@@ -401,7 +402,7 @@ fn links_that_cannot_be_joined_are_not_drawn_joined() {
 fn extreme_sizes_are_drawn_within_the_page() {
     let mut record = k18();
     record.candidates[0].linkage =
-        records::linkage([-9e11, 0.0], [9e11, 1e3], [4e11, 9.5e11, 9.2e11, 1.0, 9.5e11], 1, 1);
+        records::linkage([-9e11, 0.0], [9e11, 1e3], [4e11, 9.5e11, 9.2e11, 1.0, 9.5e11], 1, 1).into();
     for (kind, text) in everything(&record) {
         if kind == "svg" {
             parsed(&text);
@@ -419,7 +420,7 @@ fn the_candidates_csv_reads_back_the_same_numbers() {
         let (_, rows) = table_of(&candidates_csv(&record));
         assert_eq!(rows.len(), record.candidates.len());
         for (row, candidate) in rows.iter().zip(&record.candidates) {
-            let linkage = &candidate.linkage;
+            let linkage = candidate.linkage.four_bar().expect("a four-bar");
             let number =
                 |key: &str| row[key].parse::<f64>().unwrap_or_else(|_| panic!("{key}: {}", row[key]));
             for (key, value) in [
@@ -442,7 +443,7 @@ fn the_candidates_csv_reads_back_the_same_numbers() {
             ] {
                 assert_eq!(number(key), value, "{key}");
             }
-            assert_eq!(row["type"], candidate.linkage_type.name());
+            assert_eq!(row["type"], candidate.type_name());
             assert_eq!(row["accepted"], candidate.accepted.to_string());
         }
     }
@@ -452,7 +453,7 @@ fn the_candidates_csv_reads_back_the_same_numbers() {
 #[test]
 fn the_curve_csv_gives_positions_of_the_linkage_to_the_last_digit() {
     for (record, expected) in [(k18(), 360), (rocking(), 720)] {
-        let linkage = record.candidates[0].linkage;
+        let linkage = record.candidates[0].linkage.four_bar().expect("a four-bar");
         let (_, rows) = table_of(&curve_csv(&record, 0));
         assert_eq!(rows.len(), expected);
         let modes: std::collections::BTreeSet<&str> = rows.iter().map(|row| row["t1"].as_str()).collect();

@@ -84,7 +84,7 @@ pub fn candidate(
     let accepted = verdict.defects.is_empty();
     Candidate {
         rank,
-        linkage,
+        linkage: linkage.into(),
         crank_deg: crank_angles.iter().map(|a| a.to_degrees()).collect(),
         t1_at: t1.to_vec(),
         frame_deg: error.angle.as_ref().map(|angle| angle.frame.to_degrees()),
@@ -113,7 +113,7 @@ pub fn candidate(
             output: None,
             to_raw: None,
         },
-        linkage_type: mobility.linkage_type.expect("can be joined"),
+        linkage_type: Some(mobility.linkage_type.expect("can be joined")),
         grashof_margin: mobility.grashof_margin,
         transmission_deg: TransmissionRecord {
             min: extremes.min.to_degrees(),
@@ -274,7 +274,7 @@ pub fn shapes() -> Record {
 
 /// Eight points on a short stretch of a large curve, off by a fiftieth.
 pub fn detail() -> Record {
-    let big = ellipse().candidates[0].linkage;
+    let big = *ellipse().candidates[0].linkage.four_bar().expect("a four-bar");
     let angles: Vec<f64> = (0..8).map(|i| 1.2 + 0.06 * f64::from(i)).collect();
     let points: Vec<[f64; 2]> = angles
         .iter()

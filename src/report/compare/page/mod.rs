@@ -8,7 +8,7 @@ use super::trade_off::trade_off;
 use super::{Comparison, Ranked, SortKey, first_few, strokes, tables};
 use crate::record::Candidate;
 use crate::report::canvas::{Canvas, px};
-use crate::report::csv::PARAMETERS;
+use crate::report::csv::parameters_of;
 use crate::report::html::page::Page;
 use crate::report::html::table::Cell;
 use crate::report::text::{brief, clean, exact};
@@ -166,7 +166,7 @@ impl Comparison {
             Column::figure("link ratio", SortKey::LinkRatio, 3),
             Column::figure("size", SortKey::Size, 4),
             Column::figure("extent", SortKey::Extent, 4),
-            Column::new("type", |_, row| Cell::words(row.entry.candidate.linkage_type.name())),
+            Column::new("type", |_, row| Cell::words(row.entry.candidate.type_name())),
             Column::new("accepted", |_, row| Cell::words(verdict(&row.entry.candidate))),
         ];
         if self.has_angles() {
@@ -202,12 +202,11 @@ impl Comparison {
     }
 
     fn parameter_section(&self) -> Markup {
-        let mut columns =
-            vec![Column::new("type", |_, row| Cell::words(row.entry.candidate.linkage_type.name()))];
-        columns.extend(PARAMETERS.iter().map(|parameter| {
-            Column::new(parameter.0, |_, row| {
+        let mut columns = vec![Column::new("type", |_, row| Cell::words(row.entry.candidate.type_name()))];
+        columns.extend(parameters_of(self.linkages()).into_iter().map(|parameter| {
+            Column::new(parameter.0, move |_, row| {
                 let (value, shown) =
-                    tables::parameter(parameter, &row.entry.candidate.linkage, |x| brief(x, 6));
+                    tables::parameter(&parameter, &row.entry.candidate.linkage, |x| brief(x, 6));
                 Cell::number(value, shown)
             })
         }));

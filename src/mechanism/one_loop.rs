@@ -1,0 +1,695 @@
+//! Linkages of one loop, which synthesis finds: four-bar, slider-crank and inverted slider-crank behind one type.
+//!
+//! Each is C = A + a e^{i phi}, a coupler through C that carries P, and one closure with two roots, told by t1; see
+//! [`slider`](super::slider). A four-bar's numbers are those of [`FourBar`], to the last digit.
+
+use super::any::Mechanism;
+use super::four_bar::coupler_curve::SingleLoop;
+use super::four_bar::transmission::TransmissionExtremes;
+use super::{
+    AssemblyMode, Branch, Circuit, Complex, FourBar, InputArc, InputRange, InvertedSliderCrank,
+    InvertedSliderCrankParameters, Joints, LinkageError, LinkageType, NaturalCoordinates, OnCircuit,
+    SliderCrank, SliderCrankParameters, SliderJoints, SliderLinkage, SliderPosition, least_and_greatest, xy,
+};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+use std::borrow::Cow;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A linkage of one loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OneLoop {
+    /// A four-bar.
+    FourBar(FourBar),
+    /// A slider-crank.
+    SliderCrank(SliderCrank),
+    /// An inverted slider-crank.
+    InvertedSliderCrank(InvertedSliderCrank),
+}
+
+/// The kinds of linkages of one loop.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum LoopKind {
+    /// Four pins.
+    FourBar,
+    /// Three pins and a block on a fixed line.
+    SliderCrank,
+    /// Three pins and a block at a fixed pivot, through which the coupler slides.
+    InvertedSliderCrank,
+}
+
+impl LoopKind {
+    /// Every kind.
+    pub const ALL: [LoopKind; 3] = [LoopKind::FourBar, LoopKind::SliderCrank, LoopKind::InvertedSliderCrank];
+
+    /// Returns the name in files: `slider-crank`.
+    pub fn name(self) -> &'static str {
+        match self {
+            LoopKind::FourBar => "four-bar",
+            LoopKind::SliderCrank => "slider-crank",
+            LoopKind::InvertedSliderCrank => "inverted-slider-crank",
+        }
+    }
+}
+
+impl std::fmt::Display for LoopKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A position of a linkage of one loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopJoints {
+    /// C, D and P; D of an inverted slider-crank is the foot of the perpendicular from B on the coupler's line.
+    pub joints: Joints,
+    /// The direction of the coupler from C, in which D lies at t1 = +1; not of length 1.
+    pub coupler: Complex,
+}
+
+/// Mobility of a linkage of one loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopMobility {
+    /// The type of a four-bar; `None` of other kinds, or if the links cannot be assembled.
+    pub linkage_type: Option<LinkageType>,
+    /// The length that is at least zero where a link turns fully: p + q - s - l of a four-bar, of other kinds the margin of
+    /// the crank's own turn.
+    pub margin: f64,
+    /// The range of the input.
+    pub input: InputRange,
+    /// Whether the two circuits of a full turn meet in a flat position.
+    pub change_point: bool,
+}
+
+impl LoopMobility {
+    /// Returns whether the crank turns fully, so that a motor can drive it; never of a change point among four-bars.
+    pub fn input_turns_fully(&self) -> bool {
+        self.linkage_type.map_or(self.input == InputRange::Full, LinkageType::input_turns_fully)
+    }
+
+    /// Returns the arc on which a circuit's input moves; `None` if it turns fully or cannot move.
+    pub fn arc(&self, circuit: Circuit) -> Option<InputArc> {
+        self.input.arc(circuit)
+    }
+
+    /// Returns the branch of a position that closes the loop.
+    pub fn branch(&self, crank_angle: f64, assembly: AssemblyMode) -> Branch {
+        self.input.branch(self.change_point, crank_angle, assembly)
+    }
+}
+
+impl OneLoop {
+    /// Returns the kind.
+    pub fn kind(&self) -> LoopKind {
+        match self {
+            OneLoop::FourBar(_) => LoopKind::FourBar,
+            OneLoop::SliderCrank(_) => LoopKind::SliderCrank,
+            OneLoop::InvertedSliderCrank(_) => LoopKind::InvertedSliderCrank,
+        }
+    }
+
+    /// Returns the four-bar, if it is one.
+    pub fn four_bar(&self) -> Option<&FourBar> {
+        match self {
+            OneLoop::FourBar(linkage) => Some(linkage),
+            OneLoop::SliderCrank(_) | OneLoop::InvertedSliderCrank(_) => None,
+        }
+    }
+
+    /// Returns the slider-crank, if it is one.
+    pub fn slider_crank(&self) -> Option<&SliderCrank> {
+        match self {
+            OneLoop::SliderCrank(linkage) => Some(linkage),
+            OneLoop::FourBar(_) | OneLoop::InvertedSliderCrank(_) => None,
+        }
+    }
+
+    /// Returns the inverted slider-crank, if it is one.
+    pub fn inverted_slider_crank(&self) -> Option<&InvertedSliderCrank> {
+        match self {
+            OneLoop::InvertedSliderCrank(linkage) => Some(linkage),
+            OneLoop::FourBar(_) | OneLoop::SliderCrank(_) => None,
+        }
+    }
+
+    /// Returns the linkage as a mechanism of any kind.
+    pub fn mechanism(&self) -> &dyn Mechanism {
+        match self {
+            OneLoop::FourBar(linkage) => linkage,
+            OneLoop::SliderCrank(linkage) => linkage,
+            OneLoop::InvertedSliderCrank(linkage) => linkage,
+        }
+    }
+
+    /// Returns the same linkage with the given sign of the closure's root.
+    #[must_use]
+    pub fn with_assembly(self, assembly: AssemblyMode) -> Self {
+        SingleLoop::with_assembly(self, assembly)
+    }
+
+    /// Returns t1, the sign of the closure's root.
+    pub fn assembly(&self) -> AssemblyMode {
+        SingleLoop::assembly(self)
+    }
+
+    /// Returns A, the fixed pivot of the crank.
+    pub fn crank_pivot(&self) -> Complex {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.crank_pivot(),
+            OneLoop::SliderCrank(linkage) => linkage.crank_pivot(),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.crank_pivot(),
+        }
+    }
+
+    /// Returns the second fixed pivot B, of the follower or of the block; a slider-crank has none.
+    pub fn second_pivot(&self) -> Option<Complex> {
+        match self {
+            OneLoop::FourBar(linkage) => Some(linkage.follower_pivot()),
+            OneLoop::SliderCrank(_) => None,
+            OneLoop::InvertedSliderCrank(linkage) => Some(linkage.block_pivot()),
+        }
+    }
+
+    /// Returns the fixed pivots.
+    pub fn pivots(&self) -> impl Iterator<Item = Complex> + use<> {
+        std::iter::once(self.crank_pivot()).chain(self.second_pivot())
+    }
+
+    /// Returns a = |AC|, the length of the crank.
+    pub fn crank(&self) -> f64 {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.crank(),
+            OneLoop::SliderCrank(linkage) => linkage.crank(),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.crank(),
+        }
+    }
+
+    /// Returns P along and across the coupler from C, as lengths.
+    pub fn coupler_offset(&self) -> Complex {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.coupler_offset(),
+            OneLoop::SliderCrank(linkage) => linkage.coupler_offset(),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.coupler_offset(),
+        }
+    }
+
+    /// Returns the direction from which crank angles of `offset = "ground"` count: of the line A -> B, or of the slider's
+    /// line; 0 for coincident pivots.
+    pub fn ground_angle(&self) -> f64 {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.ground_angle(),
+            OneLoop::SliderCrank(linkage) => linkage.line_angle(),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.ground_angle(),
+        }
+    }
+
+    /// Returns the ratio of the longest to the shortest link: of ground, a, b, c of a four-bar, a and b of a slider-crank,
+    /// ground and a of an inverted one. Infinite for coincident pivots.
+    pub fn link_ratio(&self) -> f64 {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.link_ratio(),
+            OneLoop::SliderCrank(linkage) => linkage.link_ratio(),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.link_ratio(),
+        }
+    }
+
+    /// Returns the longest link, of those whose ratio [`OneLoop::link_ratio`] is.
+    pub fn longest_link(&self) -> f64 {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.longest_link(),
+            OneLoop::SliderCrank(linkage) => linkage.crank().max(linkage.coupler()),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.crank().max(linkage.ground()),
+        }
+    }
+
+    /// Returns b = |CD|, the length of the coupler; that of an inverted slider-crank slides through its block.
+    pub fn coupler(&self) -> Option<f64> {
+        match self {
+            OneLoop::FourBar(linkage) => Some(linkage.coupler()),
+            OneLoop::SliderCrank(linkage) => Some(linkage.coupler()),
+            OneLoop::InvertedSliderCrank(_) => None,
+        }
+    }
+
+    /// Returns |AB|, the distance of the fixed pivots; a slider-crank has one pivot.
+    pub fn ground(&self) -> Option<f64> {
+        match self {
+            OneLoop::FourBar(linkage) => Some(linkage.ground()),
+            OneLoop::SliderCrank(_) => None,
+            OneLoop::InvertedSliderCrank(linkage) => Some(linkage.ground()),
+        }
+    }
+
+    /// Returns |CP|, the distance from the crank pin to the coupler point.
+    pub fn crank_side(&self) -> f64 {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.crank_side(),
+            OneLoop::SliderCrank(linkage) => linkage.coupler_offset().norm(),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.coupler_offset().norm(),
+        }
+    }
+
+    /// Returns the largest distance between two joints of one body, P and pivots included; a rail does not count.
+    pub fn longest(&self) -> f64 {
+        match self {
+            OneLoop::FourBar(linkage) => {
+                linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
+            }
+            OneLoop::SliderCrank(linkage) => linkage.longest(),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.longest(),
+        }
+    }
+
+    /// Computes the position at a crank angle (radians) in the given assembly; `None` if the loop is open or undetermined.
+    pub fn joints_with(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<LoopJoints> {
+        let of_slider = |position: SliderPosition| {
+            let SliderJoints { crank_pin, slider_pin, coupler_point, coupler, .. } = position.joints()?;
+            let joints = Joints { crank_pin, follower_pin: slider_pin, coupler_point };
+            Some(LoopJoints { joints, coupler })
+        };
+        match self {
+            OneLoop::FourBar(linkage) => {
+                let joints = linkage.position_with(crank_angle, assembly).joints()?;
+                Some(LoopJoints { joints, coupler: joints.follower_pin - joints.crank_pin })
+            }
+            OneLoop::SliderCrank(linkage) => of_slider(linkage.position_with(crank_angle, assembly)),
+            OneLoop::InvertedSliderCrank(linkage) => of_slider(linkage.position_with(crank_angle, assembly)),
+        }
+    }
+
+    /// Computes the transmission angle at a crank angle, radians; of a four-bar the nearest flat angle, 0 or pi, if the loop is
+    /// open, of other kinds 0.
+    pub fn transmission_at(&self, crank_angle: f64) -> f64 {
+        let crank = || Complex::from_polar(1.0, crank_angle);
+        match self {
+            OneLoop::FourBar(linkage) => linkage.angle_at_follower_pin(crank_angle),
+            OneLoop::SliderCrank(linkage) => linkage.transmission_toward(crank()),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.transmission_toward(crank()),
+        }
+    }
+
+    /// Computes type, margin and range of the input.
+    pub fn mobility(&self) -> LoopMobility {
+        let of_slider = |mobility: super::slider::SliderMobility| LoopMobility {
+            linkage_type: None,
+            margin: mobility.full_turn_margin,
+            input: mobility.input,
+            change_point: mobility.change_point,
+        };
+        match self {
+            OneLoop::FourBar(linkage) => {
+                let mobility = linkage.mobility();
+                LoopMobility {
+                    linkage_type: mobility.linkage_type,
+                    margin: mobility.grashof_margin,
+                    input: mobility.input,
+                    change_point: mobility.linkage_type == Some(LinkageType::ChangePoint),
+                }
+            }
+            OneLoop::SliderCrank(linkage) => of_slider(linkage.mobility()),
+            OneLoop::InvertedSliderCrank(linkage) => of_slider(linkage.mobility()),
+        }
+    }
+
+    /// Computes the extremes of the transmission angle over the range of the crank; `None` without a position.
+    pub fn transmission_over_cycle(&self) -> Option<TransmissionExtremes> {
+        match self {
+            OneLoop::FourBar(linkage) => Some(linkage.transmission_over_cycle()),
+            OneLoop::SliderCrank(linkage) => linkage.transmission_over_range(),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.transmission_over_range(),
+        }
+    }
+
+    /// Returns its numbers, by which equals are ordered: those of its keys, as many as there are.
+    pub fn numbers(&self) -> [f64; 9] {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.natural_coordinates().numbers(),
+            OneLoop::SliderCrank(linkage) => {
+                let p = linkage.parameters();
+                let ([ax, ay], [qx, qy]) = (p.crank_pivot, p.line_point);
+                [ax, ay, qx, qy, p.line_deg, p.crank, p.coupler, p.coupler_x, p.coupler_y]
+            }
+            OneLoop::InvertedSliderCrank(linkage) => {
+                let p = linkage.parameters();
+                let ([ax, ay], [bx, by]) = (p.crank_pivot, p.block_pivot);
+                [ax, ay, bx, by, p.crank, p.offset, p.coupler_x, p.coupler_y, 0.0]
+            }
+        }
+    }
+
+    /// Returns the image p -> shift + turn p of the linkage, of its mirror image in the x axis if it is to be mirrored.
+    ///
+    /// # Errors
+    /// If a coordinate leaves the allowed range.
+    pub fn carried(&self, mirrors: bool, turn: Complex, shift: Complex) -> Result<Self, LinkageError> {
+        let place = |[x, y]: [f64; 2]| xy(shift + turn * Complex::new(x, if mirrors { -y } else { y }));
+        let sign = if mirrors { -1.0 } else { 1.0 };
+        Ok(match self {
+            OneLoop::FourBar(linkage) => {
+                let own = linkage.natural_coordinates();
+                OneLoop::FourBar(FourBar::new(NaturalCoordinates {
+                    crank_pivot: place(own.crank_pivot),
+                    follower_pivot: place(own.follower_pivot),
+                    assembly: self.carried_assembly(mirrors, own.assembly),
+                    side: if mirrors { own.side.opposite() } else { own.side },
+                    ..own
+                })?)
+            }
+            OneLoop::SliderCrank(linkage) => {
+                let own = linkage.parameters();
+                OneLoop::SliderCrank(SliderCrank::new(SliderCrankParameters {
+                    crank_pivot: place(own.crank_pivot),
+                    line_point: place(own.line_point),
+                    line_deg: turn.arg().to_degrees() + sign * own.line_deg,
+                    coupler_y: sign * own.coupler_y,
+                    ..own
+                })?)
+            }
+            OneLoop::InvertedSliderCrank(linkage) => {
+                let own = linkage.parameters();
+                OneLoop::InvertedSliderCrank(InvertedSliderCrank::new(InvertedSliderCrankParameters {
+                    crank_pivot: place(own.crank_pivot),
+                    block_pivot: place(own.block_pivot),
+                    offset: sign * own.offset,
+                    coupler_y: sign * own.coupler_y,
+                    ..own
+                })?)
+            }
+        })
+    }
+
+    /// Returns the assembly that an assembly becomes in the image: a four-bar's mirror image has the other one, a slider's
+    /// the same.
+    pub fn carried_assembly(&self, mirrors: bool, assembly: AssemblyMode) -> AssemblyMode {
+        if mirrors && self.four_bar().is_some() { assembly.opposite() } else { assembly }
+    }
+
+    /// Returns the linkage moved by the vector `by`.
+    ///
+    /// # Errors
+    /// If a coordinate leaves the allowed range.
+    pub fn shifted(&self, by: Complex) -> Result<Self, LinkageError> {
+        Ok(match self {
+            OneLoop::FourBar(linkage) => OneLoop::FourBar(linkage.shifted(by)?),
+            OneLoop::SliderCrank(linkage) => OneLoop::SliderCrank(linkage.shifted(by)?),
+            OneLoop::InvertedSliderCrank(linkage) => OneLoop::InvertedSliderCrank(linkage.shifted(by)?),
+        })
+    }
+
+    /// Returns the linkage with every length and coordinate multiplied by a factor.
+    ///
+    /// # Errors
+    /// If a length leaves the allowed range.
+    pub fn scaled(&self, factor: f64) -> Result<Self, LinkageError> {
+        Ok(match self {
+            OneLoop::FourBar(linkage) => OneLoop::FourBar(linkage.scaled(factor)?),
+            OneLoop::SliderCrank(linkage) => OneLoop::SliderCrank(linkage.scaled(factor)?),
+            OneLoop::InvertedSliderCrank(linkage) => OneLoop::InvertedSliderCrank(linkage.scaled(factor)?),
+        })
+    }
+}
+
+impl SingleLoop for OneLoop {
+    fn with_assembly(self, assembly: AssemblyMode) -> Self {
+        match self {
+            OneLoop::FourBar(linkage) => OneLoop::FourBar(linkage.with_assembly(assembly)),
+            OneLoop::SliderCrank(linkage) => {
+                OneLoop::SliderCrank(SliderLinkage::with_assembly(linkage, assembly))
+            }
+            OneLoop::InvertedSliderCrank(linkage) => {
+                OneLoop::InvertedSliderCrank(SliderLinkage::with_assembly(linkage, assembly))
+            }
+        }
+    }
+
+    fn assembly(&self) -> AssemblyMode {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.assembly(),
+            OneLoop::SliderCrank(linkage) => SliderLinkage::assembly(linkage),
+            OneLoop::InvertedSliderCrank(linkage) => SliderLinkage::assembly(linkage),
+        }
+    }
+
+    fn coupler_point_with(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<Complex> {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.coupler_point_with(crank_angle, assembly),
+            OneLoop::SliderCrank(linkage) => linkage.coupler_point_with(crank_angle, assembly),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.coupler_point_with(crank_angle, assembly),
+        }
+    }
+
+    fn arc_of(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<InputArc> {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.arc_of(crank_angle, assembly),
+            OneLoop::SliderCrank(linkage) => linkage.arc_of(crank_angle, assembly),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.arc_of(crank_angle, assembly),
+        }
+    }
+}
+
+impl OnCircuit<OneLoop> {
+    /// Computes the joints at a parameter; `None` if the loop is open.
+    pub fn joints_at(&self, parameter: f64) -> Option<Joints> {
+        let (crank_angle, assembly) = self.position_at(parameter);
+        self.linkage.joints_with(crank_angle, assembly).map(|at| at.joints)
+    }
+
+    /// Computes the extremes of the transmission angle over an interval of the parameter, at most a whole turn, in closed
+    /// form: they lie at its ends, at a toggle, and where the crank lies along the ground; of a slider at the
+    /// [turning angles](SliderLinkage::transmission_turns) of its kind.
+    pub fn transmission_between(&self, [low, high]: [f64; 2]) -> TransmissionExtremes {
+        let inside = |t: &f64| low + (t - low).rem_euclid(TAU);
+        match &self.linkage {
+            OneLoop::FourBar(linkage) => {
+                let ground = linkage.ground_angle();
+                let extreme: &[f64] = if self.arc.is_some() {
+                    &[0.0, FRAC_PI_2, PI, -FRAC_PI_2]
+                } else {
+                    &[ground, ground + PI]
+                };
+                let inside = extreme.iter().map(inside).filter(|t| *t <= high);
+                let all = [low, high].into_iter().chain(inside);
+                linkage.transmission_at(all.map(|t| linkage.diagonal(self.position_at(t).0)))
+            }
+            OneLoop::SliderCrank(linkage) => self.of_slider(linkage, [low, high]),
+            OneLoop::InvertedSliderCrank(linkage) => self.of_slider(linkage, [low, high]),
+        }
+    }
+
+    fn of_slider<L: SliderLinkage>(&self, linkage: &L, [low, high]: [f64; 2]) -> TransmissionExtremes {
+        let turns = linkage.transmission_turns();
+        let extreme: Vec<f64> = match self.arc {
+            None => turns.to_vec(),
+            Some(arc) => {
+                let on_arc = turns.into_iter().filter(|t| arc.offset(*t).abs() <= arc.half_width);
+                let of_both =
+                    |t: f64| [AssemblyMode::Plus, AssemblyMode::Minus].map(|sign| arc.parameter(t, sign));
+                on_arc.flat_map(of_both).chain([FRAC_PI_2, -FRAC_PI_2]).collect()
+            }
+        };
+        let inside = extreme.iter().map(|t| low + (t - low).rem_euclid(TAU)).filter(|t| *t <= high);
+        let at = |t: f64| linkage.transmission_toward(Complex::from_polar(1.0, self.position_at(t).0));
+        let [min, max] = least_and_greatest([low, high].into_iter().chain(inside).map(at));
+        TransmissionExtremes { min, max }
+    }
+}
+
+impl From<FourBar> for OneLoop {
+    fn from(linkage: FourBar) -> Self {
+        OneLoop::FourBar(linkage)
+    }
+}
+
+impl From<&FourBar> for OneLoop {
+    fn from(linkage: &FourBar) -> Self {
+        OneLoop::FourBar(*linkage)
+    }
+}
+
+impl From<&OneLoop> for OneLoop {
+    fn from(linkage: &OneLoop) -> Self {
+        *linkage
+    }
+}
+
+impl From<OneLoop> for super::Linkage {
+    fn from(linkage: OneLoop) -> Self {
+        match linkage {
+            OneLoop::FourBar(linkage) => super::Linkage::FourBar(linkage),
+            OneLoop::SliderCrank(linkage) => super::Linkage::SliderCrank(linkage),
+            OneLoop::InvertedSliderCrank(linkage) => super::Linkage::InvertedSliderCrank(linkage),
+        }
+    }
+}
+
+impl std::fmt::Display for OneLoop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            OneLoop::FourBar(linkage) => linkage.fmt(f),
+            OneLoop::SliderCrank(linkage) => linkage.fmt(f),
+            OneLoop::InvertedSliderCrank(linkage) => linkage.fmt(f),
+        }
+    }
+}
+
+/// The name of the kind, as the key `kind` of a slider-crank.
+#[derive(Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum SliderCrankKind {
+    SliderCrank,
+}
+
+/// The name of the kind, as the key `kind` of an inverted slider-crank.
+#[derive(Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum InvertedSliderCrankKind {
+    InvertedSliderCrank,
+}
+
+/// A linkage as it stands in records: a four-bar by its keys alone, other kinds with their name under `kind`.
+#[derive(Serialize, schemars::JsonSchema)]
+#[serde(untagged)]
+enum Written {
+    /// A four-bar.
+    FourBar(NaturalCoordinates),
+    /// A slider-crank.
+    SliderCrank {
+        /// The kind.
+        kind: SliderCrankKind,
+        #[serde(flatten)]
+        parameters: SliderCrankParameters,
+    },
+    /// An inverted slider-crank.
+    InvertedSliderCrank {
+        /// The kind.
+        kind: InvertedSliderCrankKind,
+        #[serde(flatten)]
+        parameters: InvertedSliderCrankParameters,
+    },
+}
+
+impl Serialize for OneLoop {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let written = match self {
+            OneLoop::FourBar(linkage) => Written::FourBar(linkage.natural_coordinates()),
+            OneLoop::SliderCrank(linkage) => {
+                Written::SliderCrank { kind: SliderCrankKind::SliderCrank, parameters: linkage.parameters() }
+            }
+            OneLoop::InvertedSliderCrank(linkage) => Written::InvertedSliderCrank {
+                kind: InvertedSliderCrankKind::InvertedSliderCrank,
+                parameters: linkage.parameters(),
+            },
+        };
+        written.serialize(serializer)
+    }
+}
+
+/// Every key of every kind.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    kind: Option<LoopKind>,
+    #[serde(rename = "A")]
+    crank_pivot: Option<[f64; 2]>,
+    #[serde(rename = "B")]
+    second_pivot: Option<[f64; 2]>,
+    a: Option<f64>,
+    b: Option<f64>,
+    c: Option<f64>,
+    d: Option<f64>,
+    e: Option<f64>,
+    line_point: Option<[f64; 2]>,
+    line_deg: Option<f64>,
+    offset: Option<f64>,
+    coupler_x: Option<f64>,
+    coupler_y: Option<f64>,
+    t1: Option<AssemblyMode>,
+    t2: Option<super::CouplerSide>,
+}
+
+impl Keys {
+    /// Returns the keys that are there although the kind has none of them.
+    fn stray(&self, kind: LoopKind) -> Option<&'static str> {
+        let (four_bar, slider, inverted) =
+            (kind == LoopKind::FourBar, kind == LoopKind::SliderCrank, kind == LoopKind::InvertedSliderCrank);
+        [
+            ("B", self.second_pivot.is_some() && slider),
+            ("b", self.b.is_some() && inverted),
+            ("c", self.c.is_some() && !four_bar),
+            ("d", self.d.is_some() && !four_bar),
+            ("e", self.e.is_some() && !four_bar),
+            ("t2", self.t2.is_some() && !four_bar),
+            ("line_point", self.line_point.is_some() && !slider),
+            ("line_deg", self.line_deg.is_some() && !slider),
+            ("offset", self.offset.is_some() && !inverted),
+            ("coupler_x", self.coupler_x.is_some() && four_bar),
+            ("coupler_y", self.coupler_y.is_some() && four_bar),
+        ]
+        .into_iter()
+        .find_map(|(key, strays)| strays.then_some(key))
+    }
+}
+
+impl<'de> Deserialize<'de> for OneLoop {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        fn given<T, E: Error>(value: Option<T>, key: &'static str) -> Result<T, E> {
+            value.ok_or_else(|| E::missing_field(key))
+        }
+        let keys = Keys::deserialize(deserializer)?;
+        let kind = keys.kind.unwrap_or(LoopKind::FourBar);
+        if let Some(key) = keys.stray(kind) {
+            return Err(D::Error::custom(format!("a {kind} has no key `{key}`")));
+        }
+        let crank_pivot = given(keys.crank_pivot, "A")?;
+        let crank = given(keys.a, "a")?;
+        let assembly = given(keys.t1, "t1")?;
+        let found = match kind {
+            LoopKind::FourBar => FourBar::new(NaturalCoordinates {
+                crank_pivot,
+                follower_pivot: given(keys.second_pivot, "B")?,
+                crank,
+                coupler: given(keys.b, "b")?,
+                follower: given(keys.c, "c")?,
+                crank_side: given(keys.d, "d")?,
+                follower_side: given(keys.e, "e")?,
+                assembly,
+                side: given(keys.t2, "t2")?,
+            })
+            .map(OneLoop::FourBar),
+            LoopKind::SliderCrank => SliderCrank::new(SliderCrankParameters {
+                crank_pivot,
+                crank,
+                coupler: given(keys.b, "b")?,
+                line_point: given(keys.line_point, "line_point")?,
+                line_deg: given(keys.line_deg, "line_deg")?,
+                coupler_x: given(keys.coupler_x, "coupler_x")?,
+                coupler_y: given(keys.coupler_y, "coupler_y")?,
+                assembly,
+            })
+            .map(OneLoop::SliderCrank),
+            LoopKind::InvertedSliderCrank => InvertedSliderCrank::new(InvertedSliderCrankParameters {
+                crank_pivot,
+                block_pivot: given(keys.second_pivot, "B")?,
+                crank,
+                offset: given(keys.offset, "offset")?,
+                coupler_x: given(keys.coupler_x, "coupler_x")?,
+                coupler_y: given(keys.coupler_y, "coupler_y")?,
+                assembly,
+            })
+            .map(OneLoop::InvertedSliderCrank),
+        };
+        found.map_err(D::Error::custom)
+    }
+}
+
+impl schemars::JsonSchema for OneLoop {
+    fn schema_name() -> Cow<'static, str> {
+        "OneLoop".into()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        Written::json_schema(generator)
+    }
+}
