@@ -236,7 +236,7 @@ fn yardstick(problem: &Problem, traced: &Traced) -> (f64, bool) {
     let fitted = from_the_truth(problem, traced).map(|c| c.error.objective);
     let angles: Vec<f64> = traced.positions.iter().map(|(angle, _)| angle.to_degrees()).collect();
     let assemblies: Vec<_> = traced.positions.iter().map(|(_, t1)| *t1).collect();
-    let generating = assess(problem, &traced.linkage, &angles, &assemblies).expect("it closes there");
+    let generating = assess(problem, traced.linkage, &angles, &assemblies).expect("it closes there");
     assert!(generating.accepted, "the generating linkage meets what is asked: {generating:?}");
     (fitted.unwrap_or(f64::INFINITY).min(generating.error.objective), fitted.is_none())
 }

@@ -23,7 +23,7 @@
 //! let record = run(&job, &context)?.record;
 //! let best = &record.candidates[0];
 //! assert!(best.accepted && best.error.rms < 1e-9);
-//! let [ground, crank, coupler, follower] = best.linkage.links();
+//! let [ground, crank, coupler, follower] = best.linkage.four_bar().expect("four-bars were asked for").links();
 //! assert!(ground.min(crank).min(coupler).min(follower) > 0.0);
 //! let settings = ExportSettings { scale: Some(20.0), unit: Some(linkwright::Unit::Mm), ..Default::default() };
 //! let drawing = export(&ExportSubject::of_candidate(&record, best), ExportFormat::Dxf, &settings)?;
@@ -73,8 +73,9 @@ pub use judge::verify::{Mismatch, verify};
 pub use mechanism::four_bar::cognate::Cognate;
 pub use mechanism::{
     AssemblyMode, Chain, ChainBuilder, Complex, CouplerCurve, CouplerSide, FourBar, InvertedSliderCrank,
-    InvertedSliderCrankParameters, Joints, Linkage, LinkageError, LinkageType, Mobility, NaturalCoordinates,
-    Position, SliderCrank, SliderCrankParameters, SliderLinkage, Unit, VectorLoop,
+    InvertedSliderCrankParameters, Joints, Linkage, LinkageError, LinkageType, LoopKind, Mobility,
+    NaturalCoordinates, OneLoop, Position, SliderCrank, SliderCrankParameters, SliderLinkage, Unit,
+    VectorLoop,
 };
 pub use record::{Candidate, Certificate, Record};
 pub use report::export::{

@@ -186,5 +186,5 @@ fn read(problem: &Problem, shape: &Shape, pools: &[Pool], way: f64) -> Option<Ca
             t1_at[j] = t1;
         }
     }
-    assess(problem, &linkage.with_assembly(t1_at[0]), &crank_deg, &t1_at)
+    assess(problem, linkage.with_assembly(t1_at[0]), &crank_deg, &t1_at)
 }

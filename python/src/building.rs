@@ -31,7 +31,14 @@ pub fn built(
         Given::Run(run) => {
             let chosen = run.one().map_err(|e| e.to_string())?;
             let problem = Problem::new(run.record.problem.resolved.clone()).map_err(|e| e.to_string())?;
-            let (linkage, unit) = (chosen.candidate.linkage, run.record.problem.unit);
+            let unit = run.record.problem.unit;
+            let Some(&linkage) = chosen.candidate.linkage.four_bar() else {
+                let kind = chosen.candidate.linkage.kind();
+                return Err(format!(
+                    "{} is a {kind}, and plates and layers are computed for four-bars alone",
+                    chosen.label
+                ));
+            };
             let found = Practicality::of_candidate(&problem, chosen.candidate, made(&linkage, unit));
             (chosen.label.clone(), linkage, unit, found)
         }

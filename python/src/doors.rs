@@ -65,8 +65,7 @@ fn any_linkage(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<AnyL
         return Ok(LinkageFile { name: name.clone(), unit: *unit, linkage });
     }
     if let Ok(run) = subject.cast::<Run>() {
-        let FourBar { file } = run.get().linkage(which.unwrap_or("1"))?;
-        return Ok(LinkageFile { name: file.name, unit: file.unit, linkage: Linkage::FourBar(file.linkage) });
+        return run.get().any_linkage(which.unwrap_or("1"));
     }
     if let Ok(linkage) = subject.cast::<FourBar>() {
         let LinkageFile { name, unit, linkage } = linkage.get().file.clone();

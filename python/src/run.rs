@@ -13,7 +13,7 @@ use linkwright::internals::app::job::folder::{
 };
 use linkwright::internals::app::job::run::{Context, Finished, Job, prove, run as search};
 use linkwright::internals::app::job::save::{self, Listener, Options, Ran};
-use linkwright::internals::files::linkage_file::LinkageFile;
+use linkwright::internals::files::linkage_file::{AnyLinkageFile, LinkageFile};
 use linkwright::internals::judge::certificate;
 use linkwright::internals::report::html::Shown;
 use linkwright::internals::report::html::{candidate_markup, report_showing, summary_markup};
@@ -194,6 +194,12 @@ impl Run {
         Ok(Given::Run(Box::new(inputs::Run { named, record, which })))
     }
 
+    /// Returns one of its linkages, of any kind.
+    pub fn any_linkage(&self, which: &str) -> PyResult<AnyLinkageFile> {
+        let (candidate, name) = self.chosen(which)?;
+        Ok(AnyLinkageFile { name, unit: self.record.problem.unit, linkage: candidate.linkage.into() })
+    }
+
     fn chosen(&self, which: &str) -> PyResult<(Candidate, String)> {
         let Given::Run(run) = self.given(Some(which))? else { return Err(bug(&"a linkage")) };
         let chosen = run.one().map_err(refused)?;
@@ -270,7 +276,13 @@ impl Run {
     pub fn linkage(&self, which: &str) -> PyResult<FourBar> {
         guarded(|| {
             let (candidate, name) = self.chosen(which)?;
-            let file = LinkageFile { name, unit: self.record.problem.unit, linkage: candidate.linkage };
+            let Some(&linkage) = candidate.linkage.four_bar() else {
+                return Err(refused(format!(
+                    "{name} is a {}: analyze takes the result with its number, and no class holds it yet",
+                    candidate.linkage.kind()
+                )));
+            };
+            let file = LinkageFile { name, unit: self.record.problem.unit, linkage };
             Ok(FourBar { file })
         })
     }

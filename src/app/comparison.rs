@@ -118,7 +118,7 @@ impl Target {
         let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| from.factor_to(to));
         let linkage = linkage.scaled(factor)?;
         nearest_positions(&self.problem, &linkage)
-            .and_then(|(crank_deg, assemblies)| assess(&self.problem, &linkage, &crank_deg, &assemblies))
+            .and_then(|(crank_deg, assemblies)| assess(&self.problem, linkage, &crank_deg, &assemblies))
             .ok_or_else(|| NotMeasured::NotAssembled {
                 name: self.name.clone(),
                 noun: self.problem.spec().task.noun(),

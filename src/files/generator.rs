@@ -4,7 +4,7 @@
 //! | kind of file | known by |
 //! |---|---|
 //! | SVG, HTML, DXF, STL, OpenSCAD, PNG, GIF, cut list, Markdown | the words of [`mark`], at the writer's place for them |
-//! | linkage file | the mark in its first line, and a `[linkage]` that is still in it |
+//! | linkage file | the mark in its first line, and its table (`[linkage]`, `[slider_crank]`, `[inverted_slider_crank]`), still in it |
 //! | CSV | its header row, equal to that of the file which replaces it |
 //! | JSON | `tool.name`, and the key that the kind is about |
 //! | problem file | never: it is a user's from the moment it is there |
@@ -136,11 +136,15 @@ fn first_line(bytes: &[u8]) -> &[u8] {
     line.strip_suffix(b"\r").unwrap_or(line)
 }
 
+/// The tables of the linkage files that are written.
+const LINKAGES: [&str; 3] = ["linkage", "slider_crank", "inverted_slider_crank"];
+
 /// Returns whether a text is still a linkage file: a user who has made a problem of one may have left the mark in.
 fn is_linkage(bytes: &[u8]) -> bool {
     let text = std::str::from_utf8(bytes).unwrap_or_default();
     let table = text.trim_start_matches('\u{feff}').parse::<toml::Table>();
-    table.is_ok_and(|table| table.contains_key("linkage") && !table.contains_key("task"))
+    let of_a_kind = |table: &toml::Table| LINKAGES.iter().any(|key| table.contains_key(*key));
+    table.is_ok_and(|table| of_a_kind(&table) && !table.contains_key("task"))
 }
 
 /// Returns whether a text is JSON of this tool with the key `with` and without the key `without`.

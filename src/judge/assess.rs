@@ -7,7 +7,7 @@ use crate::judge::error::{StructuralError, distances_to_curve, rms};
 use crate::judge::loosen::design_limits;
 use crate::judge::referee::judge;
 use crate::judge::requirement::{Judged, at_least, at_most};
-use crate::mechanism::{AssemblyMode, Complex, FourBar, InputRange, OneLoop, point};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, InputRange, OneLoop, SliderCrank, point};
 use crate::record::{
     AngleErrorRecord, Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord,
 };
@@ -205,7 +205,7 @@ pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorReco
     let raw = &problem.spec().task.raw.as_ref()?.points;
     let points: Vec<Complex> = raw.iter().copied().map(point).collect();
     let (first, assembly) = (candidate.crank_deg.first()?, candidate.t1_at.first()?);
-    distances_to_curve(&points, &candidate.linkage, first.to_radians(), *assembly)
+    distances_to_curve(&points, candidate.linkage, first.to_radians(), *assembly)
 }
 
 /// Returns the rows of the requirements and of the design's bounds, in the order of a record.
@@ -218,10 +218,34 @@ fn requirements(judged: &Judged<'_>) -> Vec<Requirement> {
     rows
 }
 
+/// Returns the place in a box that a slider-crank's line passes, in the middle of what the box cuts out of it; of a line
+/// that passes beside, its place nearest to the middle of the box.
+fn passed_place(rail: &SliderCrank, [x, y]: [Limits; 2]) -> Complex {
+    let (from, s) = (rail.line_point(), rail.line_direction());
+    let middle = Complex::new(0.5 * (x.0 + x.1), 0.5 * (y.0 + y.1));
+    let foot = ((middle - from) * s.conj()).re;
+    let mut inside = [f64::NEG_INFINITY, f64::INFINITY];
+    for (at, along, Limits(low, high)) in [(from.re, s.re, x), (from.im, s.im, y)] {
+        if along == 0.0 {
+            continue;
+        }
+        let (one, other) = ((low - at) / along, (high - at) / along);
+        inside = [inside[0].max(one.min(other)), inside[1].min(one.max(other))];
+    }
+    let place = if inside[0] < inside[1] && inside.iter().all(|t| t.is_finite()) {
+        0.5 * (inside[0] + inside[1])
+    } else {
+        foot
+    };
+    from + s * place
+}
+
 /// Returns the design table's limits, each with the linkage's own value.
 fn design_rows(problem: &Problem, linkage: &OneLoop) -> Vec<Requirement> {
     let (a, offset) = (linkage.crank_pivot(), linkage.coupler_offset());
     let (four_bar, second) = (linkage.four_bar(), linkage.second_pivot());
+    let rail = linkage.slider_crank();
+    let passed = rail.zip(problem.spec().design.line_point).map(|(rail, place)| passed_place(rail, place));
     // The keys of other kinds bound nothing of this one.
     let values = [
         ("design.Ax", Some(a.re)),
@@ -235,6 +259,9 @@ fn design_rows(problem: &Problem, linkage: &OneLoop) -> Vec<Requirement> {
         ("design.e", four_bar.map(FourBar::follower_side)),
         ("design.ground", linkage.ground()),
         ("design.ground_angle_deg", second.map(|_| linkage.ground_angle().to_degrees())),
+        ("design.line_deg", rail.map(|rail| rail.parameters().line_deg)),
+        ("design.line_x", passed.map(|p| p.re)),
+        ("design.line_y", passed.map(|p| p.im)),
         ("design.coupler_x", Some(offset.re)),
         ("design.coupler_y", Some(offset.im)),
     ];
@@ -242,6 +269,8 @@ fn design_rows(problem: &Problem, linkage: &OneLoop) -> Vec<Requirement> {
         let value = value?;
         let Limits(low, high) = design_limits(&problem.spec().design, name)?;
         let value = match name {
+            // A line has no sense.
+            "design.line_deg" => value + 180.0 * ((0.5 * (low + high) - value) / 180.0).round(),
             // The angle nearest to the middle of its limits.
             "design.ground_angle_deg" => value + 360.0 * ((0.5 * (low + high) - value) / 360.0).round(),
             _ => value,

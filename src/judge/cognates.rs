@@ -135,13 +135,13 @@ pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
         let (angles, t1_at) = positions(candidate, &cognate)?;
         let linkage = cognate.linkage.with_assembly(*t1_at.first()?);
         let (crank_deg, t1_at) = match problem.task().timing() {
-            Timing::Free => unwrapped(problem, &linkage, angles, t1_at),
+            Timing::Free => unwrapped(problem, linkage, angles, t1_at),
             Timing::Prescribed { offset, .. } => {
                 (in_step(problem, candidate, &cognate, (*offset, linkage.ground_angle()))?, t1_at)
             }
         };
         let to_curve = Some(candidate.error.to_curve);
-        assess_on_curve(problem, &linkage, (&crank_deg, &t1_at), None, to_curve)
+        assess_on_curve(problem, linkage, (&crank_deg, &t1_at), None, to_curve)
             .filter(|form| has_error_of(problem, candidate, (&form.linkage, form.error.sum_sq), 1.0))
     };
     found.into_iter().flatten().filter_map(judged).collect()

@@ -207,7 +207,7 @@ impl At<'_> {
     }
 
     fn design_label(&self, name: &str, side: &'static str, limit: f64, by_room: f64) -> Label {
-        let is_angle = name == "design.ground_angle_deg";
+        let is_angle = name == "design.ground_angle_deg" || name == "design.line_deg";
         Label {
             name: name.to_owned(),
             side: Some(side),

@@ -228,7 +228,7 @@ impl Task {
 pub fn structural_error(problem: &Problem, candidate: &Candidate) -> Option<StructuralError> {
     let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
     let own = candidate.own_reference(&problem.spec().task);
-    problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at, own)
+    problem.task().errors(candidate.linkage, &radians, &candidate.t1_at, own)
 }
 
 /// The cost of finding the nearest point of a curve, in positions: 720 samples are compared, and one or two minima

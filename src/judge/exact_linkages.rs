@@ -64,9 +64,9 @@ pub fn class(problem: &Problem, target: &Precise, solution: &Solution, depth: De
         let (crank_deg, t1_at) = positions(problem, mechanism);
         // All draw one curve, and on it one circuit through the first point: its distances are known after the first.
         if depth == Depth::Glance {
-            to_curve = at_points(problem, &mechanism.linkage, &crank_deg, &t1_at);
+            to_curve = at_points(problem, mechanism.linkage, &crank_deg, &t1_at);
         }
-        let judged = assess_on_curve(problem, &mechanism.linkage, (&crank_deg, &t1_at), None, to_curve);
+        let judged = assess_on_curve(problem, mechanism.linkage, (&crank_deg, &t1_at), None, to_curve);
         if let Some(form) = judged {
             to_curve.get_or_insert(form.error.to_curve);
             forms.push(form);
@@ -77,7 +77,7 @@ pub fn class(problem: &Problem, target: &Precise, solution: &Solution, depth: De
     let mut best = forms.next()?;
     if depth == Depth::Whole {
         // The best gets its own figures.
-        best = assess(problem, &best.linkage, &best.crank_deg, &best.t1_at)?;
+        best = assess(problem, best.linkage, &best.crank_deg, &best.t1_at)?;
     }
     let other =
         |c: Candidate| ExactForm { linkage: c.linkage, linkage_type: c.linkage_type, defects: c.defects };
@@ -109,7 +109,7 @@ fn at_points(
 /// Returns the crank angles, degrees, and the assemblies of a mechanism as a candidate has them.
 fn positions(problem: &Problem, mechanism: &Mechanism) -> (Vec<f64>, Vec<AssemblyMode>) {
     let (angles, assemblies) = (mechanism.crank_angles.clone(), mechanism.assemblies.clone());
-    unwrapped(problem, &mechanism.linkage, angles, assemblies)
+    unwrapped(problem, mechanism.linkage, angles, assemblies)
 }
 
 impl Class {
@@ -223,6 +223,6 @@ fn form(problem: &Problem, mechanism: &Mechanism, by: f64) -> Option<ExactForm> 
     Some(ExactForm {
         linkage: mechanism.linkage.into(),
         linkage_type: Some(mechanism.linkage.linkage_type()?),
-        defects: judge(problem.task(), &mechanism.linkage, &radians, &t1_at).defects,
+        defects: judge(problem.task(), mechanism.linkage, &radians, &t1_at).defects,
     })
 }

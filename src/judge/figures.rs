@@ -8,7 +8,7 @@ use crate::task::Problem;
 /// Returns the diagonal of the box of A, B, C, D and P over the motion that a candidate uses.
 pub fn extent(problem: &Problem, candidate: &Candidate) -> f64 {
     let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-    let verdict = judge(problem.task(), &candidate.linkage, &radians, &candidate.t1_at);
+    let verdict = judge(problem.task(), candidate.linkage, &radians, &candidate.t1_at);
     let [x0, y0, x1, y1] = verdict.motion.footprint();
     (x1 - x0).hypot(y1 - y0)
 }

@@ -36,6 +36,10 @@ pub enum DesignKey {
     CrankSide,
     /// The coupler side |DP| at the follower.
     FollowerSide,
+    /// The direction of a slider-crank's line, in degrees.
+    LineAngle,
+    /// A place that a slider-crank's line passes.
+    LinePoint,
     /// The coordinate of P along C -> D.
     CouplerX,
     /// The coordinate of P across C -> D.
@@ -49,7 +53,7 @@ enum Place {
 }
 
 /// The keys of `[design]` in the order of their declaration, each with the rows of its limits among the requirements.
-const DESIGN_KEYS: [(DesignKey, &[&str], Place); 11] = [
+const DESIGN_KEYS: [(DesignKey, &[&str], Place); 13] = [
     (DesignKey::CrankPivot, &["design.Ax", "design.Ay"], Place::Pivot(|d| &mut d.crank_pivot)),
     (DesignKey::FollowerPivot, &["design.Bx", "design.By"], Place::Pivot(|d| &mut d.follower_pivot)),
     (DesignKey::Ground, &["design.ground"], Place::One(|d| &mut d.ground)),
@@ -59,6 +63,8 @@ const DESIGN_KEYS: [(DesignKey, &[&str], Place); 11] = [
     (DesignKey::Follower, &["design.c"], Place::One(|d| &mut d.c)),
     (DesignKey::CrankSide, &["design.d"], Place::One(|d| &mut d.d)),
     (DesignKey::FollowerSide, &["design.e"], Place::One(|d| &mut d.e)),
+    (DesignKey::LineAngle, &["design.line_deg"], Place::One(|d| &mut d.line_deg)),
+    (DesignKey::LinePoint, &["design.line_x", "design.line_y"], Place::Pivot(|d| &mut d.line_point)),
     (DesignKey::CouplerX, &["design.coupler_x"], Place::One(|d| &mut d.coupler_x)),
     (DesignKey::CouplerY, &["design.coupler_y"], Place::One(|d| &mut d.coupler_y)),
 ];
@@ -270,10 +276,10 @@ impl DesignKey {
         let old = self.get(design);
         let around = |l: Limits, middle: f64, far: f64| Limits(l.0.min(middle - far), l.1.max(middle + far));
         match self {
-            DesignKey::CrankPivot | DesignKey::FollowerPivot => {
+            DesignKey::CrankPivot | DesignKey::FollowerPivot | DesignKey::LinePoint => {
                 self.set(design, |i| around(old[i], middle[i], far));
             }
-            DesignKey::GroundAngle => {
+            DesignKey::GroundAngle | DesignKey::LineAngle => {
                 self.set(design, |i| around(old[i], 0.5 * (old[i].0 + old[i].1), 180.0));
             }
             DesignKey::CouplerX | DesignKey::CouplerY => self.set(design, |i| around(old[i], 0.0, far)),
@@ -345,7 +351,7 @@ pub fn changes(problem: &Problem, loosened: &ProblemSpec, demands: &[Demand]) ->
 fn removes_default_longest(demand: Demand) -> bool {
     match demand {
         Demand::Require(kind) => kind == RequirementKind::ExtentMax,
-        Demand::Design(key) => key != DesignKey::GroundAngle,
+        Demand::Design(key) => !matches!(key, DesignKey::GroundAngle | DesignKey::LineAngle),
     }
 }
 

@@ -137,7 +137,7 @@ impl Real {
             let limit = (PASSES * span + ROUNDED * far) / closure.max(f64::EPSILON.sqrt());
             miss_over_limit = miss_over_limit.max(apart / limit);
         }
-        let defects = judge(task, &linkage, &crank_angles, &assemblies).defects;
+        let defects = judge(task, linkage, &crank_angles, &assemblies).defects;
         let passes = miss_over_limit <= 1.0;
         Some(Mechanism {
             linkage,

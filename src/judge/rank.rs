@@ -89,7 +89,7 @@ pub fn searched(problem: &Problem, candidate: &Candidate) -> f64 {
     let error = if problem.is_function() {
         // At the offset of the least squares, whichever is least in the largest error.
         let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-        problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at, None)
+        problem.task().errors(candidate.linkage, &radians, &candidate.t1_at, None)
     } else {
         structural_error(problem, candidate)
     };

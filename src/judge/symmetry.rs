@@ -141,7 +141,7 @@ impl Symmetry {
         match problem.task().timing() {
             Timing::Free => {
                 let radians = crank_deg.iter().map(|deg| deg.to_radians()).collect();
-                (crank_deg, t1_at) = unwrapped(problem, &linkage, radians, t1_at);
+                (crank_deg, t1_at) = unwrapped(problem, linkage, radians, t1_at);
             }
             Timing::Prescribed { offset, .. } => crank_deg = in_step(problem, &linkage, *offset, &crank_deg)?,
         }
@@ -208,7 +208,7 @@ mod tests {
         let problem = fixture::problem(&points, true, "");
         let (deg, t1): (Vec<f64>, Vec<AssemblyMode>) =
             (0..12).map(|j| (20.0 + 29.0 * f64::from(j), linkage.assembly())).unzip();
-        let candidate = crate::judge::assess::assess(&problem, &linkage, &deg, &t1).expect("it closes");
+        let candidate = crate::judge::assess::assess(&problem, linkage, &deg, &t1).expect("it closes");
         let all = Symmetries::of(&problem);
         assert_eq!(all.0.len(), 3);
         for image in all.images(&problem, &candidate) {

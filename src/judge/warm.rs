@@ -52,7 +52,7 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
 
 /// Returns the direction of the prescribed increments (in a function the sign of its outputs) and the angle that is added
 /// to them, in radians.
-fn direction_and_offset(problem: &Problem, candidate: &Candidate) -> (f64, f64) {
+pub fn direction_and_offset(problem: &Problem, candidate: &Candidate) -> (f64, f64) {
     let crank_deg = candidate.crank_deg.as_slice();
     let Some(timing) = &problem.spec().task.timing else { return (problem.directions()[0], 0.0) };
     if let Some(sense) = candidate.sense {

@@ -80,7 +80,7 @@ fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&
     let name = requirement.name.as_str();
     let unit = match RequirementKind::named(name) {
         Some(kind) => kind.definition().unit,
-        None if name == "design.ground_angle_deg" => LimitUnit::Degree,
+        None if ["design.ground_angle_deg", "design.line_deg"].contains(&name) => LimitUnit::Degree,
         None => LimitUnit::Length,
     };
     let unit = unit.whole(problem.task().size());

@@ -535,21 +535,21 @@ impl std::fmt::Display for OneLoop {
 }
 
 /// The name of the kind, as the key `kind` of a slider-crank.
-#[derive(Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Serialize)]
 #[serde(rename_all = "kebab-case")]
 enum SliderCrankKind {
     SliderCrank,
 }
 
 /// The name of the kind, as the key `kind` of an inverted slider-crank.
-#[derive(Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Serialize)]
 #[serde(rename_all = "kebab-case")]
 enum InvertedSliderCrankKind {
     InvertedSliderCrank,
 }
 
 /// A linkage as it stands in records: a four-bar by its keys alone, other kinds with their name under `kind`.
-#[derive(Serialize, schemars::JsonSchema)]
+#[derive(Serialize)]
 #[serde(untagged)]
 enum Written {
     /// A four-bar.
@@ -586,26 +586,56 @@ impl Serialize for OneLoop {
     }
 }
 
-/// Every key of every kind.
-#[derive(Deserialize)]
+/// A linkage as it stands in records: every key of every kind.
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "OneLoop")]
 struct Keys {
+    /// The kind; absent of a four-bar.
+    #[serde(default)]
     kind: Option<LoopKind>,
+    /// The fixed pivot of the crank.
     #[serde(rename = "A")]
-    crank_pivot: Option<[f64; 2]>,
-    #[serde(rename = "B")]
+    crank_pivot: [f64; 2],
+    /// The fixed pivot of a four-bar's follower, or of the block of an inverted slider-crank.
+    #[serde(rename = "B", default)]
     second_pivot: Option<[f64; 2]>,
-    a: Option<f64>,
+    /// |AC|.
+    a: f64,
+    /// |CD| of a four-bar and of a slider-crank.
+    #[serde(default)]
     b: Option<f64>,
+    /// |BD| of a four-bar.
+    #[serde(default)]
     c: Option<f64>,
+    /// |CP| of a four-bar.
+    #[serde(default)]
     d: Option<f64>,
+    /// |DP| of a four-bar.
+    #[serde(default)]
     e: Option<f64>,
+    /// Q, a point of a slider-crank's line, from which the slider's place counts.
+    #[serde(default)]
     line_point: Option<[f64; 2]>,
+    /// The direction of a slider-crank's line from the x axis, degrees.
+    #[serde(default)]
     line_deg: Option<f64>,
+    /// The distance of B to the left of the rod's line through C, of an inverted slider-crank.
+    #[serde(default)]
     offset: Option<f64>,
+    /// P along the coupler from C, of kinds with a slider.
+    #[serde(default)]
     coupler_x: Option<f64>,
+    /// P to the left of the coupler, of kinds with a slider.
+    #[serde(default)]
     coupler_y: Option<f64>,
-    t1: Option<AssemblyMode>,
+    /// The assembly: of a four-bar 1 where D lies left of the line from C to B; of a slider-crank where D is the one of two
+    /// places that lies further along the line; of an inverted one where the block is ahead of C along the rod.
+    #[schemars(with = "i64")]
+    t1: AssemblyMode,
+    /// The side of a four-bar's coupler point: 1 where P lies left of the line from C to D.
+    #[serde(default)]
+    #[schemars(with = "Option<i64>")]
     t2: Option<super::CouplerSide>,
 }
 
@@ -642,9 +672,7 @@ impl<'de> Deserialize<'de> for OneLoop {
         if let Some(key) = keys.stray(kind) {
             return Err(D::Error::custom(format!("a {kind} has no key `{key}`")));
         }
-        let crank_pivot = given(keys.crank_pivot, "A")?;
-        let crank = given(keys.a, "a")?;
-        let assembly = given(keys.t1, "t1")?;
+        let (crank_pivot, crank, assembly) = (keys.crank_pivot, keys.a, keys.t1);
         let found = match kind {
             LoopKind::FourBar => FourBar::new(NaturalCoordinates {
                 crank_pivot,
@@ -690,6 +718,6 @@ impl schemars::JsonSchema for OneLoop {
     }
 
     fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        Written::json_schema(generator)
+        Keys::json_schema(generator)
     }
 }

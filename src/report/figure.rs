@@ -5,10 +5,10 @@ use super::canvas::{
     Canvas, ROUND_CORNERS, ROUND_ENDS, Spot, View, filled, font, haloed, outline, palette, px, stroke,
     weighted,
 };
-use super::guide::{Drawn, Guide};
+use super::guide::Sliding;
 use super::labels::Beside;
 use super::parts::{UP, away, bars, letter, mark_joints, point_mark, stand, triangle};
-use super::scene::{Bounds, Pose, Scene, Target};
+use super::scene::{Bounds, Scene, Target};
 use super::words::joined;
 use crate::mechanism::{Complex, Joints};
 use std::collections::BTreeSet;
@@ -59,7 +59,9 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Deta
         }
         pin_paths(canvas, scene, view, detail);
         mark_joints(&mut canvas.labels, joints);
-        triangle(canvas, [c, d, p], palette::COUPLER, palette::BAR_EDGE, detail.weight);
+        // The rod of an inverted slider-crank slides through D: its plate ends below P.
+        let corner = guide.as_ref().and_then(Sliding::below_point).map_or(d, |p| view.spot(p));
+        triangle(canvas, [c, corner, p], palette::COUPLER, palette::BAR_EDGE, detail.weight);
     }
     curves(canvas, scene, view, detail);
     let marks = Marks::new(scene, view, detail);
@@ -216,34 +218,6 @@ fn targets(canvas: &mut Canvas, marks: &Marks, detail: Detail) {
     if let Some(first) = marks.list.first().filter(|mark| mark.index == 0) {
         let dot = filled(palette::TARGET, palette::PAPER, weighted(w));
         canvas.circle(first.spot, (1.5 * radius).max(5.0 * w), &dot);
-    }
-}
-
-/// The slider of a scene at its position.
-struct Sliding {
-    guide: Guide,
-    at: Drawn,
-}
-
-impl Sliding {
-    /// Returns the slider of a scene; `None` of a four-bar.
-    fn of(scene: &Scene, pose: &Pose) -> Option<Sliding> {
-        let linkage = scene.linkage.as_ref()?;
-        let guide = Guide::of(linkage.mechanism())?;
-        let [a, b, c, d, p] = pose.joints;
-        let second = scene.has_two_pivots().then_some(b);
-        let joints = std::iter::once(a).chain(second).chain([c, d, p]).collect();
-        let length = pose.coupler.norm();
-        let coupler = (length > 0.0).then(|| pose.coupler / length);
-        Some(Sliding { guide, at: Drawn { joints, coupler } })
-    }
-
-    fn rail(&self, canvas: &mut Canvas, view: &View, weight: f64) {
-        self.guide.rail(canvas, view, &self.at, weight);
-    }
-
-    fn block(&self, canvas: &mut Canvas, view: &View, weight: f64) {
-        self.guide.block(canvas, view, &self.at, weight);
     }
 }
 

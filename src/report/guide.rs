@@ -1,6 +1,7 @@
 //! The guide of a slider in drawings: the rail with its block, or the rod that slides through a block at a pivot.
 
 use super::canvas::{Canvas, ROUND_CORNERS, ROUND_ENDS, Vec2, View, filled, palette, stroke, weighted};
+use super::scene::{Pose, Scene};
 use crate::mechanism::analysis::driven::slider_range;
 use crate::mechanism::{Complex, Mechanism, Slide, dot};
 
@@ -103,5 +104,47 @@ impl Guide {
             true,
             &(filled(palette::PAPER, palette::BAR_EDGE, weighted(2.0 * weight)) + ROUND_CORNERS),
         );
+    }
+}
+
+/// The slider of a scene at its position.
+pub(super) struct Sliding {
+    guide: Guide,
+    at: Drawn,
+}
+
+impl Sliding {
+    /// Returns the slider of a scene; `None` of a four-bar.
+    pub(super) fn of(scene: &Scene, pose: &Pose) -> Option<Sliding> {
+        let linkage = scene.linkage.as_ref()?;
+        let guide = Guide::of(linkage.mechanism())?;
+        let [a, b, c, d, p] = pose.joints;
+        let second = scene.has_two_pivots().then_some(b);
+        let joints = std::iter::once(a).chain(second).chain([c, d, p]).collect();
+        let length = pose.coupler.norm();
+        let coupler = (length > 0.0).then(|| pose.coupler / length);
+        Some(Sliding { guide, at: Drawn { joints, coupler } })
+    }
+
+    /// Returns the two ends of the rail or the rod.
+    pub(super) fn ends(&self) -> [Complex; 2] {
+        self.guide.ends(&self.at)
+    }
+
+    /// Returns the foot of the perpendicular from P on a rod; `None` of a rail.
+    pub(super) fn below_point(&self) -> Option<Complex> {
+        let direction = self.at.coupler.filter(|_| self.guide.moves())?;
+        let (Some(c), Some(p)) = (self.at.joints.get(2), self.at.joints.last()) else { return None };
+        Some(c + direction * dot(direction, p - c))
+    }
+
+    /// Draws the rail or the rod.
+    pub(super) fn rail(&self, canvas: &mut Canvas, view: &View, weight: f64) {
+        self.guide.rail(canvas, view, &self.at, weight);
+    }
+
+    /// Draws the block.
+    pub(super) fn block(&self, canvas: &mut Canvas, view: &View, weight: f64) {
+        self.guide.block(canvas, view, &self.at, weight);
     }
 }

@@ -1,5 +1,6 @@
 //! The scene of a candidate's drawing: target points, the circuits used, and one position of the linkage.
 
+use super::guide::Sliding;
 use super::{body, function};
 use crate::mechanism::{
     AssemblyMode, Complex, CouplerCurve, Joints, LoopJoints, MAX_MAGNITUDE, OneLoop, point,
@@ -107,6 +108,9 @@ impl Scene {
         let pivots = self.linkage.iter().flat_map(OneLoop::pivots);
         let pins = self.circuits.iter().flatten().flat_map(|joints| [joints.crank_pin, joints.follower_pin]);
         pivots.chain(pins).for_each(|p| bounds.hold(p));
+        if let Some(sliding) = self.pose.as_ref().and_then(|pose| Sliding::of(self, pose)) {
+            sliding.ends().into_iter().for_each(|p| bounds.hold(p));
+        }
         bounds
     }
 }

@@ -140,7 +140,7 @@ fn figures(before: &Candidate, snapped: &Snapped, colour: Colour) -> String {
             verdict(if c.accepted { "yes" } else { "no" }, c.accepted),
         ]);
         for length in &snapped.lengths {
-            let value = length.of(&c.linkage);
+            let value = length.of(c.linkage);
             cells.push(plain(if stock { exact(rounded(value)) } else { significant(value, DIGITS) }));
         }
         grid.row(cells);

@@ -39,9 +39,9 @@ const CHUNK: usize = 500;
 /// The seed of the atlas: it is the same for every problem and run.
 const SEED: u64 = 0x61_746c_6173;
 /// Positions at which a curve is sampled.
-const TRACED: usize = 72;
+pub(super) const TRACED: usize = 72;
 /// Points evenly along a curve.
-const EVEN: usize = 32;
+pub(super) const EVEN: usize = 32;
 /// Fourier harmonics of each sign.
 const HARMONICS: usize = 6;
 /// Number of nearest entries that are fitted to the target by similarity.
@@ -51,11 +51,11 @@ type Descriptor = [f32; 2 * HARMONICS];
 
 /// The x and y coordinates of points, centred and scaled to unit norm.
 #[derive(Clone, Copy, Debug)]
-struct Normal<const N: usize>([[f32; N]; 2]);
+pub(super) struct Normal<const N: usize>([[f32; N]; 2]);
 
 impl<const N: usize> Normal<N> {
     /// Creates them from `N` points; `None` if all points coincide.
-    fn of(points: &[Complex]) -> Option<Self> {
+    pub(super) fn of(points: &[Complex]) -> Option<Self> {
         let middle = points.iter().sum::<Complex>() / points.len() as f64;
         let norm = points.iter().map(|p| (p - middle).norm_sqr()).sum::<f64>().sqrt();
         let mut out = [[0.0; N]; 2];
@@ -68,14 +68,14 @@ impl<const N: usize> Normal<N> {
 }
 
 /// Points evenly along a closed curve.
-type Even = Normal<EVEN>;
+pub(super) type Even = Normal<EVEN>;
 /// Points evenly along an arc.
-type OnArc = Normal<ON_ARC>;
+pub(super) type OnArc = Normal<ON_ARC>;
 
 impl Even {
     /// Returns the relative residual of a target fitted by similarity to this curve, for each shift of the first point;
     /// `ahead`: in the same direction, else reversed.
-    fn misfits(&self, target: &Even, ahead: bool) -> [f32; EVEN] {
+    pub(super) fn misfits(&self, target: &Even, ahead: bool) -> [f32; EVEN] {
         // Twice around, so that every shift is a contiguous range.
         let mut around = [[0.0f32; 2 * EVEN]; 2];
         for (around, own) in around.iter_mut().zip(&self.0) {
@@ -111,7 +111,8 @@ struct Entry {
 }
 
 /// A sampled curve with its arc length.
-struct Traced {
+#[derive(Clone, Debug)]
+pub(super) struct Traced {
     points: Vec<Complex>,
     /// The arc length up to each point over the whole length; one more than points.
     along: Vec<f64>,
@@ -206,14 +207,14 @@ impl Samples {
 }
 
 /// Returns a number in [0, 2) less its whole part.
-fn fraction(x: f64) -> f64 {
+pub(super) fn fraction(x: f64) -> f64 {
     debug_assert!((0.0..2.0).contains(&x));
     if x < 1.0 { x } else { x - 1.0 }
 }
 
 impl Traced {
     /// Measures a closed polygon; `None` if it has no length.
-    fn of(points: Vec<Complex>) -> Option<Traced> {
+    pub(super) fn of(points: Vec<Complex>) -> Option<Traced> {
         let mut along = vec![0.0];
         for i in 0..points.len() {
             let step = (points[(i + 1) % points.len()] - points[i]).norm_sqr().sqrt();
@@ -225,7 +226,7 @@ impl Traced {
     }
 
     /// Returns the index of the sample before a place in [0, 1) of the curve, and the fraction of the way to the next.
-    fn locate(&self, place: f64) -> (usize, f64) {
+    pub(super) fn locate(&self, place: f64) -> (usize, f64) {
         self.between(self.along.partition_point(|length| *length <= place), place)
     }
 
@@ -236,13 +237,13 @@ impl Traced {
         (corner, if to > from { (place - from) / (to - from) } else { 0.0 })
     }
 
-    fn point(&self, (corner, part): (usize, f64)) -> Complex {
+    pub(super) fn point(&self, (corner, part): (usize, f64)) -> Complex {
         let (from, to) = (self.points[corner], self.points[(corner + 1) % self.points.len()]);
         from + (to - from) * part
     }
 
     /// Returns points evenly along the curve, from its first sample on.
-    fn even(&self) -> Vec<Complex> {
+    pub(super) fn even(&self) -> Vec<Complex> {
         let mut samples = 0;
         let mut point = |m: usize| {
             let place = m as f64 / EVEN as f64;
@@ -254,7 +255,7 @@ impl Traced {
         (0..EVEN).map(&mut point).collect()
     }
 
-    fn parameter(&self, place: f64) -> f64 {
+    pub(super) fn parameter(&self, place: f64) -> f64 {
         let (corner, part) = self.locate(place);
         fraction((corner as f64 + 0.5 + part) / TRACED as f64)
     }
@@ -383,7 +384,7 @@ struct Arc {
 }
 
 /// Number of points on an arc.
-const ON_ARC: usize = 12;
+pub(super) const ON_ARC: usize = 12;
 /// Number of arcs per entry.
 const ARCS: usize = 3;
 /// Least and greatest length of an arc, in parts of the curve's.
@@ -410,15 +411,19 @@ impl Arc {
     /// Returns the relative residual of a target after the best similarity, for the arc in the target's direction and
     /// reversed.
     fn misfits(&self, target: &OnArc) -> [f32; 2] {
-        let (Normal([tx, ty]), Normal([x, y])) = (target, &self.points);
-        let (mut ahead, mut back) = ([0.0f32; 2], [0.0f32; 2]);
-        for m in 0..ON_ARC {
-            let r = ON_ARC - 1 - m;
-            ahead = [ahead[0] + x[m] * tx[m] + y[m] * ty[m], ahead[1] + x[m] * ty[m] - y[m] * tx[m]];
-            back = [back[0] + x[r] * tx[m] + y[r] * ty[m], back[1] + x[r] * ty[m] - y[r] * tx[m]];
-        }
-        [ahead, back].map(|z| 1.0 - (z[0] * z[0] + z[1] * z[1]))
+        arc_misfits(&self.points, target)
     }
+}
+
+/// Returns the relative residual of a target after the best similarity to an arc, in the target's direction and reversed.
+pub(super) fn arc_misfits(Normal([x, y]): &OnArc, Normal([tx, ty]): &OnArc) -> [f32; 2] {
+    let (mut ahead, mut back) = ([0.0f32; 2], [0.0f32; 2]);
+    for m in 0..ON_ARC {
+        let r = ON_ARC - 1 - m;
+        ahead = [ahead[0] + x[m] * tx[m] + y[m] * ty[m], ahead[1] + x[m] * ty[m] - y[m] * tx[m]];
+        back = [back[0] + x[r] * tx[m] + y[r] * ty[m], back[1] + x[r] * ty[m] - y[r] * tx[m]];
+    }
+    [ahead, back].map(|z| 1.0 - (z[0] * z[0] + z[1] * z[1]))
 }
 
 fn arcs() -> &'static [Arc] {

@@ -34,6 +34,35 @@ impl Effort {
     }
 }
 
+/// Linkages with a slider; chosen by `cargo bench --bench sliders`.
+pub mod sliders {
+    use super::Effort;
+    /// Rounds that run in parallel before any is read.
+    pub const BATCH: u64 = 4;
+    /// Shapes drawn in a round, the part of them whose crank turns fully, those fitted for a few steps, and to convergence.
+    pub const DRAWS: usize = 240;
+    pub const TURNING: f64 = 0.6;
+    pub const SHORT: usize = 6;
+    pub const LONG: usize = 2;
+    pub const SHORT_FIT: Effort = Effort::of(15, 2);
+    pub const LONG_FIT: Effort = Effort::of(200, 12);
+    /// Candidates fitted on to the last digit at the end, at least, and the effort of each.
+    pub const LEAST_POLISHED: usize = 8;
+    pub const POLISH: Effort = Effort::of(1500, 40);
+    /// Rounds that have to reach the best answer, or to come near it.
+    pub const HITS: usize = 5;
+    pub const NEAR_HITS: usize = 12;
+    /// A search ends that has gone on for so many rounds, and so many times as long as it took to come within a thousandth
+    /// of its best answer.
+    pub const QUIET_ROUNDS: u64 = 60;
+    pub const QUIET_TIMES: u64 = 4;
+    /// Least number of batches, and batches without a new answer that end a search for further distinct answers.
+    pub const LEAST_BATCHES: u64 = 2;
+    pub const QUIET_BATCHES: u64 = 6;
+    /// Candidates kept.
+    pub const KEPT: usize = 64;
+}
+
 /// The phases of a plan. No benchmark chooses them: they divide the budget of a problem for which the local searches
 /// find nothing acceptable.
 pub mod plan {

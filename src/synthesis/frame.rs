@@ -270,11 +270,11 @@ fn carried(
     let angles = numbering.list(&angles.collect::<Vec<_>>());
     let assemblies = numbering.list(&assemblies.collect::<Vec<_>>());
     let linkage = linkage.with_assembly(*assemblies.first()?);
-    let (crank_deg, t1_at) = unwrapped(problem, &linkage, angles, assemblies);
+    let (crank_deg, t1_at) = unwrapped(problem, linkage, angles, assemblies);
     let space = problem.space(linkage.side());
     let linkage = space.project_off_grid(&linkage, GRID, problem.task().size()).ok()?;
     let frame_deg = candidate.frame_deg.map(|frame| if by.mirrors { -frame } else { frame });
-    assess_on_curve(problem, &linkage, (&crank_deg, &t1_at), frame_deg.map(Reference::frame), to_curve)
+    assess_on_curve(problem, linkage, (&crank_deg, &t1_at), frame_deg.map(Reference::frame), to_curve)
 }
 
 /// Returns whether it makes no difference at which of its points the path begins: it is closed, no point counts twice,
@@ -441,7 +441,7 @@ mod tests {
             let assembly = if case % 3 == 0 { AssemblyMode::Minus } else { AssemblyMode::Plus };
             let (deg, t1): (Vec<f64>, Vec<AssemblyMode>) =
                 (0..12).map(|j| (from + way * 29.0 * f64::from(j), assembly)).unzip();
-            let own = assess_on_curve(&problem, &linkage.with_assembly(assembly), (&deg, &t1), None, None)
+            let own = assess_on_curve(&problem, linkage.with_assembly(assembly), (&deg, &t1), None, None)
                 .expect("it closes");
             let frame = Frame::of(&problem);
             let image = frame.exact(&problem).expect("an image");

@@ -40,6 +40,7 @@
 //! | [`repeats`] | repeated hits of the best answer, counted over independent rounds |
 //! | [`required`] | ends whose points have strayed to circuits or branches that the referee will refuse, and starts that lead back |
 //! | [`rounds`] | multistart search for prescribed timing in the physical parameters |
+//! | `sliders` | multistart search for linkages with a slider |
 //! | [`snap`] | snapping: lengths are brought to stock sizes, and the free parameters fitted again |
 //! | [`starts`] | starts of local searches: shapes drawn by type, positions by timing, the rest by linear least squares |
 //! | [`states`] | the states of the searches in a checkpoint: data alone |
@@ -83,6 +84,7 @@ mod relaxed;
 mod repeats;
 mod required;
 mod rounds;
+mod sliders;
 pub mod snap;
 pub mod starts;
 mod states;

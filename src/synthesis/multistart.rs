@@ -344,17 +344,17 @@ fn judged_with(problem: &Problem, end: &Start, to_curve: Option<CurveErrorRecord
         }
         let assemblies = vec![end.setting.assembly; crank_deg.len()];
         let own = reference_of(problem, &linkage, &crank_deg, (end.setting.direction, end.scales[1]));
-        return assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), own, to_curve);
+        return assess_on_curve(problem, linkage, (&crank_deg, &assemblies), own, to_curve);
     }
     let assemblies = end.positions.iter().map(|[e, u]| assembly_of(&shape, *e, *u)).collect::<Vec<_>>();
     let linkage = shape.linkage(assemblies[0]).ok()?;
     let angles = end.positions.iter().map(|[e, _]| e.arg()).collect();
-    let (crank_deg, assemblies) = unwrapped(problem, &linkage, angles, assemblies);
+    let (crank_deg, assemblies) = unwrapped(problem, linkage, angles, assemblies);
     let linkage = space.project(&linkage).ok()?;
     // Unless deviations count one by one, the frame is the one of the least errors.
     let own = (problem.frame_is_free() && reserve(problem, 1000) > 0)
         .then(|| Reference::frame(wrapped(space.offset(&end.design)).to_degrees()));
-    assess_on_curve(problem, &linkage, (&crank_deg, &assemblies), own, to_curve)
+    assess_on_curve(problem, linkage, (&crank_deg, &assemblies), own, to_curve)
 }
 
 /// Returns the frame of a body, or of a function's outputs with this sign and scale, at prescribed crank angles, where

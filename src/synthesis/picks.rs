@@ -188,7 +188,7 @@ fn picks(context: Context<'_>, ranked: &[Candidate], others: &[Candidate], allow
 /// Returns the accepted cognates of a candidate, judged.
 fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
     let accepted = candidate.alternatives.iter().filter(|other| other.accepted);
-    accepted.filter_map(|other| assess(problem, &other.linkage, &other.crank_deg, &other.t1_at)).collect()
+    accepted.filter_map(|other| assess(problem, other.linkage, &other.crank_deg, &other.t1_at)).collect()
 }
 
 /// Returns the ranked candidate that is equal to a pick, or else the pick with all that a record says of it.

@@ -11,10 +11,10 @@ use super::frame::{Frame, in_frame};
 use super::multistart::{LONG_FIT, fit_and_judge, polish};
 use super::polish::{improve, reserve};
 use super::population::{self, Population};
-use super::{Context, Progress, SearchOutcome, continuation, local, relaxed};
+use super::{Context, Progress, SearchOutcome, continuation, local, relaxed, sliders};
 use crate::judge::assess::{assess, assess_again};
-use crate::judge::rank::divided;
-use crate::mechanism::Complex;
+use crate::judge::rank::{divided, searched};
+use crate::mechanism::{Complex, LoopKind};
 use crate::numbers::optimise::population::PopulationError;
 use crate::record::{Candidate, RELAXED, Reason};
 use crate::task::forms::start::Start;
@@ -31,6 +31,9 @@ const FAR: f64 = 100.0;
 /// # Errors
 /// [`PopulationError`] if a population search cannot be set up.
 pub fn search(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
+    if !context.problem.spec().design.is_of_four_bars() {
+        return approximate(context);
+    }
     let Some(exact) = continuation::solve(context) else { return approximate(context) };
     if exact.suffices(context.problem) || context.stopped() {
         return Ok(exact.alone(context));
@@ -46,6 +49,49 @@ pub fn search(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
 /// # Errors
 /// As [`search`].
 pub fn approximate(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
+    let design = &context.problem.spec().design;
+    if design.is_of_four_bars() {
+        return four_bars(context);
+    }
+    let four_bars = if design.searches(LoopKind::FourBar) { Some(four_bars(context)?) } else { None };
+    Ok(with_sliders(context, four_bars))
+}
+
+/// Searches for linkages with a slider with the evaluations that a search for four-bars has left, and ranks all together.
+fn with_sliders(context: Context<'_>, four_bars: Option<SearchOutcome>) -> SearchOutcome {
+    let problem = context.problem;
+    let (limit, kinds) = (problem.spec().solve.evaluations, &problem.spec().design.mechanism);
+    let mut found = four_bars.map_or_else(Found::nothing, |outcome| Found {
+        candidates: outcome.candidates.into_iter().chain(outcome.others).collect(),
+        evaluations: outcome.evaluations,
+        reason: outcome.reason,
+        used: outcome.used,
+        repeats: outcome.repeats,
+    });
+    let limit = limit.saturating_sub(found.evaluations.objective);
+    let allowance = Allowance { limit, patience: limit };
+    if !context.stopped() && limit > 0 {
+        let best = |found: &Found| {
+            let accepted = found.candidates.iter().filter(|c| c.accepted);
+            accepted.map(|c| searched(problem, c)).min_by(f64::total_cmp).unwrap_or(f64::INFINITY)
+        };
+        let before = (best(&found), found.repeats, found.reason);
+        found.extend_by(sliders::search(context, kinds, allowance));
+        // The repeats are those of the best answer.
+        if best(&found) >= before.0 {
+            (found.repeats, found.reason) = (before.1, before.2);
+        }
+    }
+    let Found { candidates, evaluations, reason, used, repeats } = found;
+    let reason = context.stop_reason().unwrap_or(reason);
+    let (candidates, others) = divided(problem, candidates, problem.spec().solve.candidates);
+    let mut outcome = SearchOutcome { candidates, others, used, reason, evaluations, exact: None, repeats };
+    outcome.choose_anew(context, Vec::new(), Vec::new());
+    outcome
+}
+
+/// Searches for four-bars.
+fn four_bars(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
     let problem = context.problem;
     let place = Place::of(problem);
     let near = match place {
@@ -137,7 +183,7 @@ fn moved_back(problem: &Problem, candidate: &Candidate, by: Complex) -> Option<C
         Some(timing) => {
             let base = linkage.ground_angle().to_degrees();
             let crank_deg: Vec<f64> = timing.crank_deg.iter().map(|deg| base + deg).collect();
-            assess(problem, &linkage, &crank_deg, &candidate.t1_at)
+            assess(problem, linkage, &crank_deg, &candidate.t1_at)
         }
     }
 }

@@ -30,6 +30,9 @@ pub struct SearchState {
     /// State of a motion search.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) motion: Option<MotionState>,
+    /// State of a search for linkages with a slider.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) sliders: Option<MotionState>,
     /// State of a population search.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) population: Option<RestartsState>,
@@ -141,7 +144,7 @@ pub struct TimedState {
     pub(super) binding_waves: u64,
 }
 
-/// The state of a motion search between two batches.
+/// The state of a motion search, or of one for linkages with a slider, between two batches.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct MotionState {
     pub(super) found: Vec<Candidate>,

@@ -113,6 +113,7 @@ impl Similarity {
     fn design(&self, design: &DesignSpec) -> DesignSpec {
         let length = |limits: Option<Limits>| limits.map(|limits| self.length(limits));
         DesignSpec {
+            mechanism: design.mechanism.clone(),
             crank_pivot: design.crank_pivot.map(|pivot| self.pivot(pivot)),
             follower_pivot: design.follower_pivot.map(|pivot| self.pivot(pivot)),
             a: length(design.a),
@@ -122,6 +123,8 @@ impl Similarity {
             e: length(design.e),
             ground: length(design.ground),
             ground_angle_deg: design.ground_angle_deg.map(|limits| self.directions(limits)),
+            line_deg: design.line_deg.map(|limits| self.directions(limits)),
+            line_point: design.line_point.map(|place| self.pivot(place)),
             coupler_x: length(design.coupler_x),
             coupler_y: design.coupler_y.map(|limits| self.across(limits)),
         }
@@ -255,6 +258,7 @@ impl ProblemSpec {
             body.angle_deg.iter_mut().flatten().for_each(|angle| *angle = rounded_to(*angle, 64.0 * grid));
         }
         let DesignSpec {
+            mechanism: _,
             crank_pivot,
             follower_pivot,
             a,
@@ -264,13 +268,17 @@ impl ProblemSpec {
             e,
             ground,
             ground_angle_deg,
+            line_deg,
+            line_point,
             coupler_x,
             coupler_y,
         } = &mut spec.design;
-        for limits in [crank_pivot, follower_pivot].into_iter().flatten().flatten() {
+        for limits in [crank_pivot, follower_pivot, line_point].into_iter().flatten().flatten() {
             both(&at, limits);
         }
-        for limits in [a, b, c, d, e, ground, ground_angle_deg, coupler_x, coupler_y].into_iter().flatten() {
+        for limits in
+            [a, b, c, d, e, ground, ground_angle_deg, line_deg, coupler_x, coupler_y].into_iter().flatten()
+        {
             both(&of_itself, limits);
         }
         let require = &mut spec.require;
@@ -345,6 +353,7 @@ mod tests {
         };
         let points: Vec<[f64; 2]> = (0..n).map(|_| pair(-3.0, 3.0)).map(|Limits(x, y)| [x, y]).collect();
         let design = DesignSpec {
+            mechanism: Vec::new(),
             crank_pivot: Some([pair(-3.0, 3.0), Limits(0.5, 0.5)]),
             follower_pivot: Some([pair(-3.0, 3.0), pair(-3.0, 3.0)]),
             a: Some(pair(0.1, 3.0)),
@@ -354,6 +363,8 @@ mod tests {
             e: Some(pair(0.1, 3.0)),
             ground: Some(pair(0.1, 3.0)),
             ground_angle_deg: Some(pair(-80.0, 80.0)),
+            line_deg: Some(pair(-80.0, 80.0)),
+            line_point: Some([pair(-3.0, 3.0), Limits(0.25, 0.25)]),
             coupler_x: Some(pair(-3.0, 3.0)),
             coupler_y: Some(pair(-3.0, 3.0)),
         };

@@ -3,7 +3,7 @@
 //! It is written as `problem.resolved` in a record, and a run starts from it; a problem file, a library caller and
 //! `verify` all lead to it. Angles in degrees, lengths in the file's unit.
 
-use crate::mechanism::MAX_MAGNITUDE;
+use crate::mechanism::{LoopKind, MAX_MAGNITUDE};
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
 use crate::task::Task;
@@ -60,6 +60,9 @@ impl ProblemSpec {
 /// The bounds of the parameters. A key that is absent does not bind.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DesignSpec {
+    /// The kinds of linkages that are searched for, sorted; empty: four-bars alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mechanism: Vec<LoopKind>,
     /// The crank's pivot.
     #[serde(rename = "A", default, skip_serializing_if = "Option::is_none")]
     pub crank_pivot: Option<[Limits; 2]>,
@@ -87,6 +90,12 @@ pub struct DesignSpec {
     /// The direction from A to B, degrees from the x axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ground_angle_deg: Option<Limits>,
+    /// The direction of a slider-crank's line, degrees from the x axis; a line has no sense, so that half a turn is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line_deg: Option<Limits>,
+    /// A place that a slider-crank's line passes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line_point: Option<[Limits; 2]>,
     /// P along C -> D from C.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coupler_x: Option<Limits>,
@@ -104,6 +113,16 @@ pub const DEFAULT_SHORTEST: f64 = 0.02;
 pub const FUNCTION_RATIOS: [f64; 2] = [0.1, 10.0];
 
 impl DesignSpec {
+    /// Returns whether linkages of a kind are searched for.
+    pub fn searches(&self, kind: LoopKind) -> bool {
+        if self.mechanism.is_empty() { kind == LoopKind::FourBar } else { self.mechanism.contains(&kind) }
+    }
+
+    /// Returns whether four-bars alone are searched for.
+    pub fn is_of_four_bars(&self) -> bool {
+        self.mechanism.iter().all(|kind| *kind == LoopKind::FourBar)
+    }
+
     /// Returns the length of the ground link that a function is scaled to: |AB| of the pivots given, the greatest ground
     /// given, or 1.
     pub fn function_ground(&self) -> f64 {

@@ -2,6 +2,7 @@
 
 import { CycleChart } from "../../src/report/html/player/chart.mjs";
 import type { Cycle } from "../../src/report/html/player/cycle.mjs";
+import type { FourBar } from "../../src/report/html/player/kinematics.mjs";
 import { Player } from "../../src/report/html/player/player.mjs";
 import { element, figure, shape } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
@@ -92,7 +93,7 @@ class AnglesPlayer extends Player {
 
   /** The angles at a sample, without a jump from the one before. */
   private turn(sample: Sample, before: Sample | null) {
-    const { B } = (this.cycle as Cycle).mechanism.linkage;
+    const { B } = (this.cycle as Cycle).mechanism.linkage as FourBar;
     const [coupler, follower] = [degrees(sample.joints.C, sample.joints.D), degrees(B, sample.joints.D)];
     sample.coupler = before ? near(coupler, before.coupler as number) : coupler;
     sample.follower = before ? near(follower, before.follower as number) : follower;

@@ -47,6 +47,32 @@ test("positions, transmission angles, velocities and accelerations are the kerne
   assert.ok(closed >= 80 && open >= 5, `${closed} closed, ${open} open`);
 });
 
+test("so are those of linkages with a slider", () => {
+  const count = { "slider-crank": 0, "inverted-slider-crank": 0, open: 0 };
+  for (const row of golden.sliders) {
+    const kernel = kernelOf(row.linkage);
+    const joints = positionAt(kernel, row.angle, row.t1);
+    if (!row.P) {
+      assert.equal(joints, null);
+      count.open += 1;
+      continue;
+    }
+    for (const name of ["C", "D", "P"]) near(joints[name], row[name], 10, name);
+    near(transmissionAngle(kernel, joints), row.mu, 10, "mu");
+    const motion = motionAt(kernel, joints, golden.omega, golden.alpha);
+    const sine = Math.sin(row.mu);
+    const rate = (vector) => Math.max(10, Math.hypot(...[vector].flat())) / sine;
+    near(motion.vP, row.vP, rate(row.vP), "velocity of P");
+    near(motion.aP, row.aP, rate(row.aP) / sine, "acceleration of P");
+    near(motion.omega3, row.omega3, Math.max(1, Math.abs(row.omega3)) / sine, "omega3");
+    count[row.linkage.kind] += 1;
+  }
+  assert.ok(
+    count["slider-crank"] >= 25 && count["inverted-slider-crank"] >= 25 && count.open >= 5,
+    JSON.stringify(count),
+  );
+});
+
 test("a whole motion reaches its points where the kernel does, at the places that it names", () => {
   const kinds = new Set();
   for (const { mechanism, target, reached } of golden.motions) {

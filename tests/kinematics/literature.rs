@@ -169,7 +169,7 @@ fn an_error_names_its_worst_point_and_weights_enter_the_objective_only() {
     let l = linkage([[0.0, 0.0], [3.7, 0.0]], [2.0, 4.0, 2.7, 2.37, 2.87], 1, 1);
     let angles = [30.0f64, 45.0, 60.0, 75.0, 90.0].map(f64::to_radians);
     let assemblies = [AssemblyMode::Plus; 5];
-    let error = weighted.errors(&l, &angles, &assemblies, None).unwrap();
+    let error = weighted.errors(l, &angles, &assemblies, None).unwrap();
     let sq: Vec<f64> = error.structural.iter().map(|e| e.norm_sqr()).collect();
     for (j, &target) in plain.points().iter().enumerate() {
         let generated = l.position(angles[j]).joints().unwrap().coupler_point;
@@ -178,7 +178,7 @@ fn an_error_names_its_worst_point_and_weights_enter_the_objective_only() {
     let slack = 8.0 * f64::EPSILON * error.objective;
     assert!((error.sum_sq - sq.iter().sum::<f64>()).abs() <= slack);
     assert!((error.objective - sq.iter().zip(weights).map(|(e, w)| e * w).sum::<f64>()).abs() <= slack);
-    assert_eq!(error.sum_sq, plain.errors(&l, &angles, &assemblies, None).unwrap().sum_sq);
+    assert_eq!(error.sum_sq, plain.errors(l, &angles, &assemblies, None).unwrap().sum_sq);
     assert_eq!(error.max, error.structural[error.max_at].norm());
     assert!(sq.iter().all(|e| e.sqrt() <= error.max * (1.0 + 4.0 * f64::EPSILON)));
 }

@@ -526,7 +526,7 @@ fn a_rocking_crank_that_keeps_its_order_only_through_toggles_has_a_branch_defect
         [p.re, p.im]
     });
     let task = Task::new(points.to_vec(), Timing::Free, TaskOptions::default()).expect("a path");
-    let verdict = judge(&task, &linkage, &at, &[AssemblyMode::Plus; 3]);
+    let verdict = judge(&task, linkage, &at, &[AssemblyMode::Plus; 3]);
     assert_eq!(names(&verdict), ["branch"]);
     assert!(verdict.motion.transmission().worst() < 1e-6, "the toggles are part of the motion");
 }

@@ -113,7 +113,7 @@ fn an_exact_answer_to_many_points_stands_alone_and_a_poor_one_has_no_family() {
         .collect();
     let text = format!("format = 1\n[task.path]\npoints = [{}]\nclosed = true\n", points.join(", "));
     let problem = Problem::new(parse(&text).spec).expect("it is one");
-    let candidate = assess(&problem, &linkage, &deg, &[AssemblyMode::Plus; 20]).expect("it closes");
+    let candidate = assess(&problem, linkage, &deg, &[AssemblyMode::Plus; 20]).expect("it closes");
     assert!(candidate.accepted && candidate.error.sum_sq < 1e-24);
     assert_eq!(dimension(&problem, &candidate), Some(0));
     assert_eq!(linkwright::internals::judge::family::family(&problem, &candidate), None);
@@ -132,7 +132,7 @@ fn answers_of_one_curve_are_one_answer() {
     let mut parts = best.linkage.four_bar().expect("a four-bar").natural_coordinates();
     parts.crank *= 1.001;
     let near = FourBar::new(parts).expect("it is one");
-    all.extend(assess(&problem, &near, &best.crank_deg, &best.t1_at));
+    all.extend(assess(&problem, near, &best.crank_deg, &best.t1_at));
     assert_eq!(all.len(), 4);
     assert_eq!(count_distinct(&problem, &all, 5), 1);
     let (ranked, others) = divided(&problem, all, 5);

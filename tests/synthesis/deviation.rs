@@ -29,7 +29,7 @@ fn true_record(file: ProblemFile) -> Record {
 fn errors(record: &Record, candidate: &Candidate) -> Vec<f64> {
     let task = record.problem.resolved.task.to_task().expect("it is one");
     let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-    let error = task.errors(&candidate.linkage, &radians, &candidate.t1_at, None).expect("it closes");
+    let error = task.errors(candidate.linkage, &radians, &candidate.t1_at, None).expect("it closes");
     let mut list: Vec<f64> = error.structural.iter().map(|e| e.norm()).collect();
     list.sort_by(|one, other| other.total_cmp(one));
     list
@@ -118,7 +118,7 @@ fn tolerances_are_the_unit_of_the_deviation() {
     let best = &record.candidates[0];
     let task = record.problem.resolved.task.to_task().expect("it is one");
     let radians: Vec<f64> = best.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-    let error = task.errors(&best.linkage, &radians, &best.t1_at, None).expect("it closes");
+    let error = task.errors(best.linkage, &radians, &best.t1_at, None).expect("it closes");
     let parts: Vec<f64> = error.structural.iter().zip(&tolerances).map(|(e, t)| e.norm() / t).collect();
     let most = parts.iter().copied().fold(0.0, f64::max);
     assert!((best.error.objective - most).abs() <= 1e-12);

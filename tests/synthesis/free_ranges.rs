@@ -106,7 +106,7 @@ fn functions_of_random_linkages_are_found_again_from_the_proportions_of_their_pa
         // The linkage by itself has the same figures: its ranges and its offset are found.
         let (crank_deg, t1_at) =
             nearest_positions(&checked, best.linkage.four_bar().expect("a four-bar")).expect("it closes");
-        let found = assess(&checked, &best.linkage, &crank_deg, &t1_at).expect("it closes");
+        let found = assess(&checked, best.linkage, &crank_deg, &t1_at).expect("it closes");
         assert!(
             found.error.rms < best.error.rms + 1e-3,
             "case {case}: {} {}",

@@ -364,7 +364,7 @@ fn a_linkage_by_itself_is_measured_in_its_own_sense_and_no_record_may_run_its_in
         let problem = Problem::new(of("any")).expect("a problem");
         let (crank_deg, t1_at) =
             nearest_positions(&problem, best.linkage.four_bar().expect("a four-bar")).expect("it closes");
-        let found = assess(&problem, &best.linkage, &crank_deg, &t1_at).expect("it closes");
+        let found = assess(&problem, best.linkage, &crank_deg, &t1_at).expect("it closes");
         assert_eq!(found.sense, Some(sense));
         assert!((found.error.rms - best.error.rms).abs() < 1e-6, "{} {}", found.error.rms, best.error.rms);
         for (has, own) in crank_deg.iter().zip(&best.crank_deg) {

@@ -91,7 +91,7 @@ fn direct(
     let angles: Vec<f64> = crank_angles.iter().map(|psi| base + direction * psi).collect();
     problem
         .task()
-        .errors(&linkage, &angles, &vec![assembly; angles.len()], None)
+        .errors(linkage, &angles, &vec![assembly; angles.len()], None)
         .map_or(f64::NAN, |e| e.objective)
 }
 
@@ -166,7 +166,7 @@ fn no_neighbouring_coupler_point_or_pivot_fits_better() {
             let angles: Vec<f64> = crank_angles.iter().map(|psi| offset + psi).collect();
             problem
                 .task()
-                .errors(&linkage, &angles, &[AssemblyMode::Minus; 7], None)
+                .errors(linkage, &angles, &[AssemblyMode::Minus; 7], None)
                 .expect("closed")
                 .objective
         };

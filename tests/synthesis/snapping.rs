@@ -55,7 +55,7 @@ fn snapped_lengths_are_stock_to_the_digit_and_the_record_is_true() {
         assert!(before.accepted && found.candidates[0].accepted);
         for candidate in &found.candidates {
             for length in &found.lengths {
-                let value = length.of(&candidate.linkage);
+                let value = length.of(candidate.linkage);
                 let count = (value / step).round();
                 assert!((value - step * count).abs() <= 8.0 * f64::EPSILON * value, "{length:?} {value}");
                 assert!(count >= 1.0);
@@ -83,7 +83,7 @@ fn no_combination_of_three_lengths_around_it_is_better_than_what_is_found() {
             let (problem, before, found) = snapped(from, &request);
             let best = &found.candidates[0];
             let near = |length: Length| -> Vec<f64> {
-                let middle = (length.of(&before.linkage) / step).round();
+                let middle = (length.of(before.linkage) / step).round();
                 (-3..=3).map(|k| (middle + f64::from(k)) * step).filter(|v| *v > 0.5 * step).collect()
             };
             let mut tried = 0;
@@ -143,7 +143,7 @@ fn a_linkage_whose_lengths_are_stock_already_keeps_them_and_its_curve() {
     let found =
         snap(Context::new(&problem, &budget()), &candidate, &request(10.0, &keys)).expect("an answer");
     for length in keys {
-        assert!((length.of(&found.candidates[0].linkage) - length.of(&linkage)).abs() < 1e-12);
+        assert!((length.of(found.candidates[0].linkage) - length.of(linkage)).abs() < 1e-12);
     }
     assert!(found.candidates[0].error.rms < 1e-9 * problem.task().size());
 }

@@ -327,7 +327,7 @@ fn places_that_are_met_do_not_make_a_motion_exact_whose_angles_are_missed() {
         let problem = Problem::new(problem(poses, ALONE)).expect("a problem");
         let (angles, assemblies): (Vec<f64>, Vec<AssemblyMode>) =
             taken.positions.iter().map(|(angle, t)| (angle.to_degrees(), *t)).unzip();
-        let candidate = assess(&problem, &taken.linkage, &angles, &assemblies).expect("it closes");
+        let candidate = assess(&problem, taken.linkage, &angles, &assemblies).expect("it closes");
         assert!(candidate.error.rms < 1e-12 * problem.task().size());
         is_exact(&problem, &candidate)
     };

@@ -7,8 +7,10 @@ use crate::common::root;
 use crate::random::{TYPES, linkage};
 use crate::report::records::{detail, k18, rocking, shapes};
 use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, Motion};
-use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar, xy};
-use linkwright::internals::numbers::arithmetic::streams::stream;
+use linkwright::internals::mechanism::{
+    AssemblyMode, Complex, FourBar, InvertedSliderCrank, OneLoop, SliderCrank, Status, xy,
+};
+use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
 use linkwright::internals::record::Record;
 use linkwright::internals::report::html::report_html;
 use serde_json::{Value, json};
@@ -49,6 +51,45 @@ fn position(linkage: &FourBar, angle: f64, t1: AssemblyMode) -> Option<Value> {
     }
 }
 
+/// Draws a linkage with a slider.
+fn slider(draws: &mut Stream, inverted: bool) -> OneLoop {
+    let mut number = |low: f64, high: f64| uniform(draws, low, high);
+    let pivot = Complex::new(number(-2.0, 2.0), number(-2.0, 2.0));
+    let other = pivot + Complex::new(number(-3.0, 3.0), number(-3.0, 3.0));
+    let offset = Complex::new(number(-3.0, 3.0), number(-3.0, 3.0));
+    let (a, b, h) = (number(0.3, 2.0), number(1.0, 4.0), number(-1.0, 1.0));
+    let (angle, t1) = (number(-3.0, 3.0), AssemblyMode::of(number(-1.0, 1.0)));
+    if inverted {
+        let made = InvertedSliderCrank::from_parts([pivot, other], a, h, offset, t1);
+        OneLoop::InvertedSliderCrank(made.expect("a linkage"))
+    } else {
+        let made = SliderCrank::from_parts(pivot, [a, b], (other, angle), offset, t1);
+        OneLoop::SliderCrank(made.expect("a linkage"))
+    }
+}
+
+/// A linkage with a slider at a crank angle, as far as the kernel has an answer.
+fn slider_position(linkage: &OneLoop, angle: f64) -> Option<Value> {
+    let mechanism = linkage.mechanism();
+    let moved = mechanism.motion_at(angle, INPUT);
+    let mut row = json!({ "linkage": linkage, "angle": angle, "t1": i64::from(linkage.assembly()) });
+    let last = mechanism.traced();
+    match moved.pose.status {
+        Status::Ok if moved.pose.transmission?.sin() > CLEAR_SINE => {
+            for (name, joint) in [("C", last - 2), ("D", last - 1), ("P", last)] {
+                row[name] = pair(moved.pose.joints[joint]?);
+            }
+            row["mu"] = json!(moved.pose.transmission?);
+            row["vP"] = pair(moved.velocities[last]?);
+            row["aP"] = pair(moved.accelerations[last]?);
+            row["omega3"] = json!(moved.coupler?.speed_rad_s);
+            Some(row)
+        }
+        Status::Open => Some(row),
+        _ => None,
+    }
+}
+
 fn motions(record: &Record) -> Vec<Value> {
     let page = report_html(record, 0);
     let data =
@@ -83,6 +124,11 @@ fn golden() -> Value {
             positions.extend(position(&linkage, angle, t1));
         }
     }
+    let mut sliders = Vec::new();
+    for i in 0..40 {
+        let linkage = slider(&mut draws, i % 2 == 1);
+        sliders.extend((0..3).filter_map(|j| slider_position(&linkage, 0.4 + 2.1 * f64::from(j))));
+    }
     let mut one_branch = rocking();
     one_branch.candidates[0].crank_deg.truncate(2);
     one_branch.candidates[0].t1_at.truncate(2);
@@ -92,6 +138,7 @@ fn golden() -> Value {
         "omega": INPUT.speed_rad_s,
         "alpha": INPUT.acceleration_rad_s2,
         "positions": positions,
+        "sliders": sliders,
         "motions": records.iter().flat_map(motions).collect::<Vec<_>>(),
     })
 }

@@ -34,7 +34,8 @@ fn settings(line: &str) -> Vec<(String, String)> {
 }
 
 /// Words that a message of our own names for a key; the tables that it may stand in.
-const TABLES: [&str; 6] = ["", "solve.", "require.", "task.path.", "task.path.timing.", "task.function."];
+const TABLES: [&str; 7] =
+    ["", "solve.", "design.", "require.", "task.path.", "task.path.timing.", "task.function."];
 
 /// Whether a reader takes a word for a key; in a problem that is made for it where the word asks for one.
 fn is_taken(key: &str, value: &str) -> bool {

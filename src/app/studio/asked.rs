@@ -38,6 +38,9 @@ pub enum NotHere {
     /// Some crank angles are prescribed and others free.
     #[error("the studio has no free crank angles among given ones: run it with `linkwright synth`")]
     PartlyTimed,
+    /// Other kinds than four-bars are searched for.
+    #[error("the studio draws four-bars alone: run it with `linkwright synth`")]
+    Sliders,
     /// The ranges of a function are free.
     #[error("the studio has no free ranges of functions: run it with `linkwright synth`")]
     FreeRanges,
@@ -55,6 +58,9 @@ pub enum AskError {
     /// Too few poses or pairs in an edit, or too many.
     #[error("a target has {FEWEST_TARGETS} to {MOST_POINTS} {1}s here, and this one has {0}")]
     Targets(usize, &'static str),
+    /// An edit keeps a key that searches for other kinds than four-bars.
+    #[error("the studio draws four-bars alone: leave `design.mechanism` out")]
+    Sliders,
     /// An edit with a body has another number of angles than of points.
     #[error("{0} poses have {1} angles: `body.angle_deg` has one for each, null where only the place counts")]
     Angles(usize, usize),
@@ -283,6 +289,9 @@ impl Ask {
         }
         let text = self.problem_text()?;
         let problem = problem_file::parse("drawing", &text, None, &[]).map_err(AskError::Problem)?;
+        if !problem.spec.design.is_of_four_bars() {
+            return Err(AskError::Sliders);
+        }
         Ok((problem, text))
     }
 
@@ -291,7 +300,10 @@ impl Ask {
     /// # Errors
     /// [`NotHere`] if the studio cannot hold it.
     pub fn of(problem: &ProblemFile) -> Result<Ask, NotHere> {
-        let ProblemSpec { task: path, require, solve, .. } = &problem.spec;
+        let ProblemSpec { task: path, require, solve, design } = &problem.spec;
+        if !design.is_of_four_bars() {
+            return Err(NotHere::Sliders);
+        }
         if path.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
             return Err(NotHere::PartlyTimed);
         }

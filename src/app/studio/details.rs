@@ -323,7 +323,7 @@ impl House {
             }
         }
         let mut candidate =
-            assess(&problem, &linkage, &drawn.crank_deg, &t1_at).ok_or(DetailsError::NotAssembled)?;
+            assess(&problem, linkage, &drawn.crank_deg, &t1_at).ok_or(DetailsError::NotAssembled)?;
         candidate.rank = 1;
         let mut candidates = if with_costs { priced(&problem, candidate) } else { vec![candidate] };
         for candidate in &mut candidates {
@@ -344,9 +344,9 @@ impl House {
         let problem = Problem::new(ask.problem()?.spec).map_err(AskError::Task)?;
         let linkage = FourBar::new(*linkage)?;
         let positions = nearest_positions(&problem, &linkage);
-        let judged = positions.and_then(|(crank_deg, t1_at)| assess(&problem, &linkage, &crank_deg, &t1_at));
+        let judged = positions.and_then(|(crank_deg, t1_at)| assess(&problem, linkage, &crank_deg, &t1_at));
         let candidate = judged.ok_or(DetailsError::NotAssembled)?;
-        Ok(Shown { rank: 1, ..Shown::from(&candidate) })
+        Ok(Shown { rank: 1, ..Shown::of(&candidate).ok_or(DetailsError::OfAnotherKind)? })
     }
 
     /// Returns the details of a linkage.
@@ -362,7 +362,7 @@ impl House {
             tolerance: path.tolerance.clone(),
             transmission_deg_min: require.transmission_deg_min,
             candidates: record.candidates.len(),
-            shown: Shown::from(found.candidate()),
+            shown: Shown::of(found.candidate()).ok_or(DetailsError::OfAnotherKind)?,
             summary: html::summary_markup(record),
             words: html::candidate_markup(record, *index).unwrap_or_default(),
         })

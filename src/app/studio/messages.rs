@@ -3,7 +3,7 @@
 use super::pin_map::PinMap;
 use super::targets::{BodyAsk, FunctionAsk};
 use crate::files::problem_file::Expect;
-use crate::mechanism::{LinkageType, NaturalCoordinates, OneLoop, Unit};
+use crate::mechanism::{LinkageType, NaturalCoordinates, Unit};
 use crate::record::{AngleErrorRecord, Candidate, ExactLinkage, ExactRecord, ProblemRecord, Relaxation};
 use crate::report::exact;
 use crate::report::html::Drive;
@@ -240,8 +240,8 @@ pub struct Shown {
     /// Its number: it keeps it while it follows the hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub number: Option<u64>,
-    /// The linkage, as in records.
-    pub linkage: OneLoop,
+    /// The linkage, as in linkage files.
+    pub linkage: NaturalCoordinates,
     /// Its drive over its motion.
     pub drive: Drive,
     /// The crank angle at each target point, degrees.
@@ -268,7 +268,7 @@ pub struct Shown {
     pub angle: Option<AngleErrorRecord>,
     /// Its type.
     #[serde(rename = "type")]
-    pub linkage_type: Option<LinkageType>,
+    pub linkage_type: LinkageType,
     /// The worst transmission angle, degrees from 0 to 90.
     pub transmission_deg: f64,
     /// Longest over shortest link.
@@ -287,29 +287,29 @@ pub struct Shown {
 
 impl Shown {
     /// Returns a candidate that follows the hand under a number.
-    pub(super) fn numbered((number, candidate): (&u64, &Candidate)) -> Shown {
-        Shown { number: Some(*number), ..Shown::from(candidate) }
+    pub(super) fn numbered((number, candidate): (&u64, &Candidate)) -> Option<Shown> {
+        Some(Shown { number: Some(*number), ..Shown::of(candidate)? })
     }
 
     /// Returns a real linkage through nine points that is judged.
-    pub(super) fn exact(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Shown {
-        Shown {
+    pub(super) fn exact(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Option<Shown> {
+        Some(Shown {
             rank,
             ability: Some(exact::ability(linkage).into()),
             certified_within: linkage.certified.map(|certified| certified.radius),
-            ..Shown::from(judged)
-        }
+            ..Shown::of(judged)?
+        })
     }
-}
 
-impl From<&Candidate> for Shown {
-    fn from(candidate: &Candidate) -> Shown {
+    /// Returns a candidate ready to be played; `None` of a linkage with a slider, which this page does not play.
+    pub(super) fn of(candidate: &Candidate) -> Option<Shown> {
+        let (linkage, linkage_type) = (candidate.linkage.four_bar()?, candidate.linkage_type?);
         let missed = candidate.requirements.iter().filter(|r| !r.met).map(|r| r.name.clone());
-        Shown {
+        Some(Shown {
             rank: candidate.rank,
             number: None,
-            linkage: candidate.linkage,
-            drive: Drive::new(candidate.linkage, &candidate.crank_deg, &candidate.t1_at),
+            linkage: linkage.natural_coordinates(),
+            drive: Drive::new(linkage, &candidate.crank_deg, &candidate.t1_at),
             crank_deg: candidate.crank_deg.clone(),
             t1_at: candidate.t1_at.iter().map(|t1| i64::from(*t1)).collect(),
             worst: candidate.error.max_at,
@@ -319,14 +319,14 @@ impl From<&Candidate> for Shown {
             output_offset_deg: candidate.output_offset_deg,
             sense: candidate.sense,
             angle: candidate.error.of_link().copied(),
-            linkage_type: candidate.linkage_type,
+            linkage_type,
             transmission_deg: candidate.transmission_deg.worst,
             link_ratio: candidate.link_ratio,
             accepted: candidate.accepted,
             unmet: missed.collect(),
             ability: None,
             certified_within: candidate.certified.map(|certified| certified.radius),
-        }
+        })
     }
 }
 

@@ -190,7 +190,7 @@ impl Tab {
             Some((counted, shown)) => (Some(counted.clone()), shown.clone()),
             None => {
                 let all = self.session.numbers().iter().zip(self.session.candidates());
-                (None, all.map(Shown::numbered).collect())
+                (None, all.filter_map(Shown::numbered).collect())
             }
         };
         let (version, said) = (self.version, said.into());
@@ -328,15 +328,15 @@ impl Tab {
 /// Returns all real linkages that follow the hand, with their counts; they are judged already.
 fn all_followed(exact: &Exact) -> (Counted, Vec<Shown>) {
     let judged = exact.classes.iter().map(|class| &class.best).zip(&exact.record.linkages);
-    let shown = (1..).zip(judged).map(|(rank, (best, linkage))| Shown::exact(best, rank, linkage));
+    let shown = (1..).zip(judged).filter_map(|(rank, (best, linkage))| Shown::exact(best, rank, linkage));
     (Counted::of(&exact.record), shown.collect())
 }
 
 /// Judges all real linkages of an exact solution and returns them with their counts.
 fn all_of(problem: &Problem, exact: &ExactRecord) -> (Counted, Vec<Shown>) {
     let shown = (1..).zip(&exact.linkages).filter_map(|(rank, one)| {
-        let judged = assess(problem, &one.linkage, &one.crank_deg, &one.t1_at)?;
-        Some(Shown::exact(&judged, rank, one))
+        let judged = assess(problem, one.linkage, &one.crank_deg, &one.t1_at)?;
+        Shown::exact(&judged, rank, one)
     });
     (Counted::of(exact), shown.collect())
 }

@@ -43,7 +43,7 @@ pub fn evaluate(problem: &Problem, published: &Published) -> Option<Candidate> {
     let judged = |assembly: AssemblyMode| {
         let linkage = linkage_of(vector, assembly)?;
         let (crank_deg, assemblies) = nearest_positions(problem, &linkage)?;
-        assess(problem, &linkage, &crank_deg, &assemblies)
+        assess(problem, linkage, &crank_deg, &assemblies)
     };
     match published.t1 {
         Some(assembly) => judged(assembly),

@@ -4,9 +4,11 @@ use super::raw::RawDesign;
 use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::linkage_file::{no_triangle, triangle_remedy};
 use crate::files::toml_text::TomlText;
-use crate::mechanism::FLAT_TOLERANCE;
+use crate::mechanism::{FLAT_TOLERANCE, LoopKind};
+use crate::task::TaskKind;
 use crate::task::region::Region;
-use crate::task::spec::{DesignSpec, Limits, RequireSpec};
+use crate::task::spec::{DesignSpec, Limits, Method, Objective, RequireSpec, SolveSpec, TaskSpec};
+use crate::task::values::OneOrMore;
 
 /// Two quantities that should agree may differ by this part of their scale: a person types few digits.
 const TYPED_DIGITS: f64 = 1e-6;
@@ -15,6 +17,7 @@ const TYPED_DIGITS: f64 = 1e-6;
 pub(super) fn spec_of(raw: &RawDesign) -> DesignSpec {
     let limits = |b: Option<crate::files::toml_values::Bounds>| b.map(|b| b.0);
     DesignSpec {
+        mechanism: kinds_of(raw),
         crank_pivot: raw.crank_pivot.map(|p| p.0),
         follower_pivot: raw.follower_pivot.map(|p| p.0),
         a: limits(raw.a),
@@ -24,9 +27,64 @@ pub(super) fn spec_of(raw: &RawDesign) -> DesignSpec {
         e: limits(raw.e),
         ground: limits(raw.ground),
         ground_angle_deg: limits(raw.ground_angle_deg),
+        line_deg: limits(raw.line_deg),
+        line_point: raw.line_point.map(|p| p.0),
         coupler_x: limits(raw.coupler_x),
         coupler_y: limits(raw.coupler_y),
     }
+}
+
+/// Returns the kinds of linkages, sorted; none where they are four-bars alone.
+fn kinds_of(raw: &RawDesign) -> Vec<LoopKind> {
+    let mut kinds = raw.mechanism.as_ref().map_or_else(Vec::new, |kinds| kinds.0.clone());
+    kinds.sort_unstable();
+    kinds.dedup();
+    if kinds == [LoopKind::FourBar] { Vec::new() } else { kinds }
+}
+
+/// Refuses an empty list of kinds, and kinds with a slider where they are not searched for: for motions and functions, with
+/// free crank angles among prescribed ones, by other methods than least squares, and for the largest deviation.
+pub(super) fn of_kinds(
+    toml: &TomlText<'_>,
+    raw: &RawDesign,
+    (task, solve): (&TaskSpec, &SolveSpec),
+) -> Checked<()> {
+    let lines = [("line_deg", raw.line_deg.is_some()), ("line_point", raw.line_point.is_some())];
+    let has_line = raw.mechanism.as_ref().is_some_and(|kinds| kinds.0.contains(&LoopKind::SliderCrank));
+    if let Some((key, _)) = lines.into_iter().find(|(_, given)| *given && !has_line) {
+        let message = format!("{key} is about the line of a slider-crank, and none is searched for");
+        return toml.refuse(
+            &format!("design.{key}"),
+            message,
+            "remove it, or write mechanism = \"slider-crank\"",
+        );
+    }
+    let Some(OneOrMore(kinds)) = &raw.mechanism else { return Ok(()) };
+    if kinds.is_empty() {
+        return toml.refuse(
+            "design.mechanism",
+            "no kind of linkage is listed",
+            "write mechanism = \"four-bar\"",
+        );
+    }
+    let Some(slider) = kinds.iter().find(|kind| **kind != LoopKind::FourBar) else { return Ok(()) };
+    let is_partly_timed = task.timing.as_ref().is_some_and(|timing| !timing.free.is_empty());
+    let of_populations = matches!(solve.method, Method::Genetic | Method::DifferentialEvolution);
+    let why = if task.kind() != TaskKind::Path {
+        format!("\"{slider}\" is searched for paths alone, and this is a {}", task.kind().name())
+    } else if is_partly_timed {
+        format!("\"{slider}\" is not searched for with free crank angles among prescribed ones")
+    } else if of_populations || solve.method == Method::Continuation {
+        format!(
+            "\"{slider}\" is searched for by least squares alone, not by method = \"{}\"",
+            solve.method.name()
+        )
+    } else if solve.objective == Objective::MaxDeviation {
+        format!("\"{slider}\" is fitted by least squares alone, not by the largest deviation")
+    } else {
+        return Ok(());
+    };
+    toml.refuse("design.mechanism", why, "write mechanism = \"four-bar\", or change what does not go with it")
 }
 
 /// Refuses lengths that are no lengths and bounds that contradict one another.

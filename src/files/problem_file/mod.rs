@@ -187,6 +187,7 @@ fn parse_at(
     solve.certify = certify;
     warnings.extend(in_vain);
     method_of(&toml, &path, solve.method)?;
+    design::of_kinds(&toml, &raw.design.0, (&path, &solve))?;
     pins_of(&toml, &path, &require)?;
     lines_of(&toml, (&path, &design), &require, solve.method)?;
     if solve.objective == Objective::MaxDeviation {

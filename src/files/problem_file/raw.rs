@@ -6,11 +6,12 @@ use super::ranges::RangeNumbers;
 use crate::files::toml_values::{
     BoundedXY, Bounds, Count, CrankAngle, Number, OneOrEach, OnlyTable, PoseNumbers, XY,
 };
-use crate::mechanism::Unit;
+use crate::mechanism::{LoopKind, Unit};
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
 use crate::task::requirement::RawRequire;
 use crate::task::spec::{Method, Objective, Variables};
+use crate::task::values::OneOrMore;
 use crate::task::{AngleOffset, Sense};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -175,6 +176,9 @@ pub(crate) struct RawTiming {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Design")]
 pub(crate) struct RawDesign {
+    /// The kinds of linkages to search for, ranked together: one name or a list of four-bar (default), slider-crank and
+    /// inverted-slider-crank. Kinds with a slider take paths.
+    pub mechanism: Option<OneOrMore<LoopKind>>,
     /// The fixed pivot of the crank: [x, y], each a number or [min, max]; where silent, within 5 sizes of the target.
     #[serde(rename = "A")]
     pub crank_pivot: Option<BoundedXY>,
@@ -195,6 +199,11 @@ pub(crate) struct RawDesign {
     pub ground: Option<Bounds>,
     /// The direction from A to B, degrees from the x axis.
     pub ground_angle_deg: Option<Bounds>,
+    /// The direction of a slider-crank's line, degrees from the x axis; any where silent. Half a turn makes no difference.
+    pub line_deg: Option<Bounds>,
+    /// A place that a slider-crank's line passes: [x, y], each a number or [min, max]; where silent, it passes within 5 sizes
+    /// of the target's centre.
+    pub line_point: Option<BoundedXY>,
     /// P along the line from C to D, from C; where silent, at most 5 sizes of the target either way.
     pub coupler_x: Option<Bounds>,
     /// P across the line from C to D, positive to its left; likewise.

@@ -45,7 +45,7 @@ impl Practicality {
             return None;
         }
         let radians: Vec<f64> = angles.iter().map(|deg| deg.to_radians()).collect();
-        let verdict = judge(problem.task(), &candidate.linkage, &radians, &candidate.t1_at);
+        let verdict = judge(problem.task(), candidate.linkage, &radians, &candidate.t1_at);
         let cycle = candidate.transmission_deg.over == TransmissionOver::Cycle;
         let sweep = Sweep::of_motion(&verdict.motion, cycle)?;
         let felt = sensitivity_of(problem, candidate);

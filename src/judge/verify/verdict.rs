@@ -10,7 +10,7 @@ pub(super) fn scale(requirement: &Requirement, size: f64) -> f64 {
     let value = if let Figure::Number(value) = requirement.value { Some(value) } else { None };
     match (RequirementKind::named(&requirement.name), requirement.name.as_str()) {
         (Some(kind), _) => (kind.definition().rounding)(value, size),
-        (None, "design.ground_angle_deg") => 180.0,
+        (None, "design.ground_angle_deg" | "design.line_deg") => 180.0,
         // d, e and the coupler's offset follow from each other by square roots of small differences.
         (None, "design.coupler_x" | "design.coupler_y" | "design.d" | "design.e") => 1e4 * size,
         (None, _) => size,

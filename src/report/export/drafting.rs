@@ -15,7 +15,7 @@ pub(super) fn sketch(model: &Model<'_>, joints: &Joints) -> String {
     let body = model.body(joints);
     layers.extend(body.map(|_| ("BODY", 6)));
     let mut drawing = Drawing::new(&layers);
-    let [a, b, c, d, p] = all_joints(&model.linkage, joints);
+    let [a, b, c, d, p] = all_joints(model.linkage, joints);
     for (from, to) in [(a, b), (a, c), (c, d), (b, d), (c, p), (d, p)] {
         // Some programs refuse a line without length.
         if from != to {

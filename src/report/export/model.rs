@@ -118,9 +118,9 @@ impl<'a> Model<'a> {
         let arm = ARM * if size > 0.0 { size } else { longest };
         let angles = target.iter().zip(&subject.body_deg);
         let wanted = angles.filter_map(|(at, deg)| Some(arms(*at, (*deg)?.to_radians(), arm))).collect();
-        let first = subject.positions.first().copied().unwrap_or_else(|| middle_position(&linkage));
+        let first = subject.positions.first().copied().unwrap_or_else(|| middle_position(linkage));
         let all = std::iter::once(first).chain(subject.positions.iter().copied());
-        let circuits = circuits_through(&linkage, all, settings.samples());
+        let circuits = circuits_through(linkage, all, settings.samples());
         let curves = circuits.iter().map(|c| c.iter().map(|j| j.coupler_point).collect()).collect();
         Ok(Model {
             subject,
@@ -194,7 +194,7 @@ impl<'a> Model<'a> {
 
     /// Returns the crank angle (radians), the assembly and the joints at which drawings start.
     pub(super) fn start(&self) -> Result<((f64, AssemblyMode), Joints), Refusal> {
-        let middle = middle_position(&self.linkage);
+        let middle = middle_position(self.linkage);
         let mut tried = self.subject.positions.iter().copied().chain([middle]);
         let found = tried.find_map(|(angle, assembly)| {
             Some(((angle, assembly), self.linkage.position_with(angle, assembly).joints()?))

@@ -109,7 +109,8 @@ fn verdict(record: &Record) -> String {
     let noun = record.problem.resolved.task.noun();
     let figures = |c: &Candidate| {
         format!(
-            "{}, rms error {}{unit}, largest {}{unit} at {noun} {}{}, worst transmission angle {}°",
+            "{} {}, rms error {}{unit}, largest {}{unit} at {noun} {}{}, worst transmission angle {}°",
+            if c.type_name().starts_with('i') { "an" } else { "a" },
             c.type_name(),
             significant(c.error.rms, 4),
             significant(c.error.max, 4),
@@ -121,12 +122,12 @@ fn verdict(record: &Record) -> String {
     let accepted = record.candidates.iter().filter(|c| c.accepted).count();
     match (record.candidates.first(), accepted, record.candidates.len()) {
         (None, ..) => "No linkage was found.".to_owned(),
-        (Some(best), 0, _) => format!("No candidate is accepted. The nearest is a {}.", figures(best)),
-        (Some(best), _, 1) => format!("One linkage, accepted: a {}.", figures(best)),
+        (Some(best), 0, _) => format!("No candidate is accepted. The nearest is {}.", figures(best)),
+        (Some(best), _, 1) => format!("One linkage, accepted: {}.", figures(best)),
         (Some(best), n, all) if n == all => {
-            format!("{all} linkages, all accepted. The best is a {}.", figures(best))
+            format!("{all} linkages, all accepted. The best is {}.", figures(best))
         }
-        (Some(best), n, all) => format!("{all} linkages, {n} accepted. The best is a {}.", figures(best)),
+        (Some(best), n, all) => format!("{all} linkages, {n} accepted. The best is {}.", figures(best)),
     }
 }
 

@@ -48,7 +48,8 @@ pub use front::front_html;
 pub use motion::{Drive, DriveKind};
 
 /// The player's modules, each after those that it imports.
-pub(super) const PLAYER: [&str; 7] = [
+pub(super) const PLAYER: [&str; 8] = [
+    include_str!("player/sliders.mjs"),
     include_str!("player/kinematics.mjs"),
     include_str!("player/drive.mjs"),
     include_str!("player/svg.mjs"),

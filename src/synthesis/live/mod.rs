@@ -185,7 +185,7 @@ mod tests {
             let first = session.follow(&moved, &budget)[0].clone();
             assert_eq!(first.rank, 1);
             // Judged by the referee of the moved problem, and no worse than the linkage that stayed behind.
-            let again = crate::judge::assess::assess(&moved, &first.linkage, &first.crank_deg, &first.t1_at);
+            let again = crate::judge::assess::assess(&moved, first.linkage, &first.crank_deg, &first.t1_at);
             assert_eq!(again.expect("closed").error.sum_sq, first.error.sum_sq);
             let behind = judged(&moved, &start_at(&moved, &stale).expect("a start")).expect("closed");
             assert!(first.error.sum_sq <= behind.error.sum_sq, "{by}");

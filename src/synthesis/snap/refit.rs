@@ -182,12 +182,12 @@ fn fit(
         .four_bar()
         .and_then(|linkage| on_its_circle(linkage, fixed))
         .filter(|_| !polar)
-        .and_then(|linkage| assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at));
+        .and_then(|linkage| assess(problem, linkage, &candidate.crank_deg, &candidate.t1_at));
     let Some(start) = start_at(&narrowed, moved.as_ref().unwrap_or(candidate)) else { return (None, 0) };
     let fitted = finish(context.of(&narrowed), &start, evaluations);
     let found = fitted.end.and_then(|end| judged(&narrowed, &end)).and_then(|found| {
         let linkage = to_the_digit(found.linkage.four_bar()?, fixed)?;
-        assess(problem, &linkage, &found.crank_deg, &found.t1_at)
+        assess(problem, linkage, &found.crank_deg, &found.t1_at)
     });
     (found, fitted.evaluations)
 }

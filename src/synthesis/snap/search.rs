@@ -103,7 +103,7 @@ pub fn snap(context: Context<'_>, candidate: &Candidate, request: &Request) -> R
     }
     let near = |length: Length, at: &Candidate, count: usize| {
         let Limits(low, high) = length.limits(design);
-        request.stock.near(length.of(&at.linkage), count, low, high)
+        request.stock.near(length.of(at.linkage), count, low, high)
     };
     let mut plain = request.fixed.clone();
     for &length in &lengths {
@@ -225,7 +225,7 @@ fn neighbours(choice: &Choice, lengths: &[Length], stock: &Stock, design: &Desig
     let moves: Vec<(Length, f64)> = lengths
         .iter()
         .flat_map(|&length| {
-            let at = choice.fixed.get(length).unwrap_or_else(|| length.of(&choice.candidate.linkage));
+            let at = choice.fixed.get(length).unwrap_or_else(|| length.of(choice.candidate.linkage));
             let Limits(low, high) = length.limits(design);
             let near = stock.near(at, NEAR, low, high);
             let up = near.iter().copied().filter(|v| *v > at).fold(f64::INFINITY, f64::min);

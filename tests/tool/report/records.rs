@@ -72,9 +72,9 @@ pub fn candidate(
     crank_angles: &[f64],
     t1: &[AssemblyMode],
 ) -> Candidate {
-    let error = task.errors(&linkage, crank_angles, t1, None).expect("closes at every point");
-    let to_curve = distances_to_curve(task.points(), &linkage, crank_angles[0], t1[0]).expect("has a curve");
-    let verdict = judge(task, &linkage, crank_angles, t1);
+    let error = task.errors(linkage, crank_angles, t1, None).expect("closes at every point");
+    let to_curve = distances_to_curve(task.points(), linkage, crank_angles[0], t1[0]).expect("has a curve");
+    let verdict = judge(task, linkage, crank_angles, t1);
     let mobility = linkage.mobility();
     let (extremes, over) = if mobility.input_turns_fully() {
         (linkage.transmission_over_cycle(), TransmissionOver::Cycle)

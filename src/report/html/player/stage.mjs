@@ -1,5 +1,6 @@
 // The drawing that moves: the linkage over its target, its crank dragged by the hand.
 
+import { guideEnds, guideOf, isSlider } from "./sliders.mjs";
 import { angleTicks, element, figure, minus, pathThrough, px, roundLength, setAll, shape } from "./svg.mjs";
 
 /** Room around the geometry for letters and stands, pixels. */
@@ -132,9 +133,11 @@ export class Stage {
   makeMovingParts() {
     const line = (name) => shape("path", { class: name });
     this.parts = {
+      rail: line("rail"),
       coupler: line("coupler"),
       bars: line("bar-edge"),
       barsInside: line("bar"),
+      block: line("block"),
       pinA: shape("circle", { class: "pin", r: 5.4 }),
       pinB: shape("circle", { class: "pin", r: 5.4 }),
       pinD: shape("circle", { class: "pin", r: 4.4 }),
@@ -198,6 +201,14 @@ export class Stage {
     this.cycle = cycle;
     this.closed = closed;
     this.circuit = cycle.circuit();
+    const { kernel } = cycle;
+    this.guide = isSlider(kernel) ? guideOf(kernel, this.circuit) : null;
+    const hasB = "B" in cycle.mechanism.linkage;
+    this.parts.pinB.classList.toggle("absent", !hasB);
+    this.letters.B.classList.toggle("absent", !hasB);
+    for (const name of ["rail", "block"]) this.parts[name].classList.toggle("absent", !this.guide);
+    // The foot on a rod is no pin.
+    this.parts.pinD.classList.toggle("absent", !!this.guide?.moves);
     this.layOut();
   }
 
@@ -218,9 +229,15 @@ export class Stage {
   }
 
   wholeBox() {
-    const { A, B } = this.cycle.mechanism.linkage;
+    const { A, B } = /** @type {any} */ (this.cycle.mechanism.linkage);
     const moving = this.circuit.flatMap((joints) => (joints ? [joints.C, joints.D, joints.P] : []));
-    return boxOf([A, B, ...moving, ...this.cycle.points.map((point) => point.target)]);
+    const ends = this.guide ? this.circuit.flatMap((joints) => (joints ? this.guideAt(joints) : [])) : [];
+    return boxOf([A, ...(B ? [B] : []), ...moving, ...ends, ...this.cycle.points.map((point) => point.target)]);
+  }
+
+  /** The two ends of the rail or the rod. */
+  guideAt(joints) {
+    return guideEnds(this.cycle.kernel, this.guide, joints);
   }
 
   /** Draws what stands still, for the width that there is. */
@@ -249,8 +266,7 @@ export class Stage {
 
   ground() {
     if (this.look === "target") return [];
-    const { A, B } = this.cycle.mechanism.linkage;
-    const [a, b] = [this.toPixel(A), this.toPixel(B)];
+    const { A, B } = /** @type {any} */ (this.cycle.mechanism.linkage);
     const stand = ([x, y]) => {
       let hatch = "";
       for (let i = 0; i < 6; i += 1) hatch += `M${px(x - 14 + 5.6 * i)} ${px(y + 16)}l-4.5 5.5`;
@@ -259,7 +275,8 @@ export class Stage {
         shape("path", { d: `M${px(x - 16)} ${px(y + 16)}h32${hatch}` }),
       ]);
     };
-    return [shape("path", { class: "ground", d: pathThrough([a, b]) }), stand(a), stand(b)];
+    const pivots = (B ? [A, B] : [A]).map(this.toPixel);
+    return [shape("path", { class: "ground", d: pathThrough(pivots) }), ...pivots.map(stand)];
   }
 
   curves() {
@@ -351,6 +368,18 @@ export class Stage {
     ];
   }
 
+  /** The outline of the block at a position. */
+  blockAt(joints) {
+    const { kernel } = this.cycle;
+    return outlineAt(this.toPixel(joints.D), this.guide.moves ? joints.u : /** @type {any} */ (kernel).s);
+  }
+
+  /** The foot of the perpendicular from P on the rod. @returns {[number, number]} */
+  belowPoint(/** @type {any} */ { C, u }) {
+    const along = this.cycle.kernel.z[0];
+    return [C[0] + u[0] * along, C[1] + u[1] * along];
+  }
+
   /** Moves the linkage to q. @param {number} q */
   pose(q) {
     this.q = q;
@@ -359,11 +388,19 @@ export class Stage {
     this.options.onPose?.(this, joints);
     this.moving.classList.toggle("absent", !joints);
     if (!joints) return;
-    const { A, B } = this.cycle.mechanism.linkage;
-    const [a, b, c, d, p] = [A, B, joints.C, joints.D, joints.P].map(this.toPixel);
-    const bars = pathThrough([a, c]) + pathThrough([c, d]) + pathThrough([b, d]);
+    const { A, B } = /** @type {any} */ (this.cycle.mechanism.linkage);
+    const [a, b, c, d, p] = [A, B ?? joints.D, joints.C, joints.D, joints.P].map(this.toPixel);
+    const links = this.guide ? pathThrough([a, c]) : pathThrough([a, c]) + pathThrough([c, d]) + pathThrough([b, d]);
     const { parts, letters } = this;
-    setAll(parts.coupler, { d: `${pathThrough([c, d, p])}Z` });
+    // An arm holds a block at its pivot.
+    const bars = links + (this.guide?.moves ? pathThrough([b, d]) : "");
+    // The plate of a rod ends below P.
+    const corner = this.guide?.moves ? this.toPixel(this.belowPoint(joints)) : d;
+    setAll(parts.coupler, { d: `${pathThrough([c, corner, p])}Z` });
+    if (this.guide) {
+      setAll(parts.rail, { d: pathThrough(this.guideAt(joints).map(this.toPixel)) });
+      setAll(parts.block, { d: this.blockAt(joints) });
+    }
     setAll(parts.bars, { d: bars });
     setAll(parts.barsInside, { d: bars });
     const seats = { pinA: a, pinB: b, pinC: c, pinD: d, P: p, grip: c };
@@ -386,6 +423,13 @@ export class Stage {
       "aria-valuetext": `${figure(crank, 4)} degrees`,
     });
   }
+}
+
+/** The outline of a block of 22 by 13 pixels along a direction of the plane. */
+function outlineAt([x, y], [ux, uy]) {
+  /** @returns {[number, number]} */
+  const corner = (i, j) => [x + 11 * i * ux + 6.5 * j * uy, y - 11 * i * uy + 6.5 * j * ux];
+  return `${pathThrough([corner(1, 1), corner(-1, 1), corner(-1, -1), corner(1, -1)])}Z`;
 }
 
 /** Marks under a slider: where the points are, and the part that they use. */

@@ -1,0 +1,221 @@
+//! Are slider-cranks and inverted slider-cranks found again from points of their curves, and the right kind among several?
+//!
+//! ```text
+//! cargo bench --bench sliders                  every class, 200 curves each; 40 of mixed kinds
+//! cargo bench --bench sliders -- closed 20     classes whose name contains the word, 20 curves
+//!     --seed N        of the curves (1)
+//!     --show          every curve that was missed
+//! ```
+//!
+//! | class | targets |
+//! |---|---|
+//! | closed-60 | 60 points of the whole curve of a crank that turns fully |
+//! | open-30 | 30 points over 90 to 300 degrees of such a crank |
+//! | timed-18 | 18 points over a whole turn, with their crank angles |
+//! | mixed | half by four-bars and half by sliders, all three kinds searched for; closed, 60 points |
+//!
+//! Linkages are drawn whose lengths, pivots and rail lie within the default bounds of their target. *Recovered* is an
+//! accepted first candidate with rms/size below 1e-9 (in the mixed class: of the kind that drew the target). One thread, one
+//! answer asked for, `longest_max = "any"`. Times are those of the search.
+
+#![expect(clippy::print_stdout, reason = "the table is what this program is for")]
+
+use linkwright::Problem;
+use linkwright::internals::app::job::run::{Context, Job, run};
+use linkwright::internals::mechanism::{
+    AssemblyMode, Complex, FourBar, InvertedSliderCrank, LoopKind, OneLoop, SliderCrank, bounding_box, xy,
+};
+use linkwright::internals::numbers::arithmetic::streams::{Stream, below, stream, uniform};
+use linkwright::internals::record::statistics::median;
+use linkwright::internals::task::AngleOffset;
+use linkwright::internals::task::spec::{DesignSpec, SolveSpec};
+use std::f64::consts::{PI, TAU};
+use std::sync::atomic::AtomicBool;
+
+/// rms over size below which a curve counts as recovered.
+const RECOVERED: f64 = 1e-9;
+/// The default reach of pivots, links and rails, in sizes.
+const REACH: f64 = 5.0;
+/// The default least length, and the greatest ratio of links.
+const SHORTEST: f64 = 0.02;
+const RATIO: f64 = 20.0;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Points {
+    Closed,
+    Open,
+    Timed,
+}
+
+/// Draws a linkage of a kind whose crank turns fully, with joints within a few cranks of each other.
+fn drawn(kind: LoopKind, draws: &mut Stream) -> Option<OneLoop> {
+    let turn = Complex::from_polar(1.0, uniform(draws, -PI, PI));
+    let assembly = if below(draws, 2) == 0 { AssemblyMode::Plus } else { AssemblyMode::Minus };
+    let place = |draws: &mut Stream, reach: f64| {
+        Complex::new(uniform(draws, -reach, reach), uniform(draws, -reach, reach))
+    };
+    let (pivot, offset) = (place(draws, 2.0), place(draws, 4.0));
+    let crank = uniform(draws, 0.3, 2.0);
+    let linkage = match kind {
+        LoopKind::FourBar => {
+            let ground = turn * uniform(draws, 1.0, 4.0);
+            let (coupler, follower) = (uniform(draws, 1.0, 4.0), uniform(draws, 1.0, 4.0));
+            let links = [crank, coupler, follower];
+            OneLoop::FourBar(
+                FourBar::with_coupler_offset([pivot, pivot + ground], links, offset, assembly).ok()?,
+            )
+        }
+        LoopKind::SliderCrank => {
+            let coupler = uniform(draws, 1.0, 5.0);
+            let line = (pivot + place(draws, 2.0), turn.arg());
+            OneLoop::SliderCrank(
+                SliderCrank::from_parts(pivot, [crank, coupler], line, offset, assembly).ok()?,
+            )
+        }
+        LoopKind::InvertedSliderCrank => {
+            let block = pivot + turn * uniform(draws, 0.3, 5.0);
+            let h = uniform(draws, -1.5, 1.5);
+            OneLoop::InvertedSliderCrank(
+                InvertedSliderCrank::from_parts([pivot, block], crank, h, offset, assembly).ok()?,
+            )
+        }
+    };
+    let mobility = linkage.mobility();
+    let worst = linkage.transmission_over_cycle()?.worst().to_degrees();
+    (mobility.input_turns_fully() && worst >= 5.0 && linkage.link_ratio() <= RATIO).then_some(linkage)
+}
+
+/// Returns whether a linkage lies within the default bounds of its target.
+fn within_bounds(linkage: &OneLoop, points: &[Complex]) -> bool {
+    let [low, high] = bounding_box(points.iter().copied());
+    let (centre, size) = (0.5 * (low + high), (high - low).norm());
+    let near = |p: Complex| (p - centre).re.abs() <= REACH * size && (p - centre).im.abs() <= REACH * size;
+    let lengths: Vec<f64> =
+        [Some(linkage.crank()), linkage.coupler(), linkage.ground()].into_iter().flatten().collect();
+    let follower = linkage.four_bar().map_or(SHORTEST * size, FourBar::follower);
+    let rail = linkage.slider_crank().map_or(0.0, |l| {
+        let s = l.line_direction();
+        ((centre - l.line_point()) * s.conj()).im.abs()
+    });
+    let z = linkage.coupler_offset();
+    lengths.iter().chain([&follower]).all(|l| (SHORTEST * size..=REACH * size).contains(l))
+        && linkage.pivots().all(near)
+        && rail <= REACH * size
+        && z.re.abs().max(z.im.abs()) <= REACH * size
+}
+
+/// Draws a linkage and points of its curve, with their crank angles (degrees).
+fn target(kind: LoopKind, of: Points, draws: &mut Stream) -> (OneLoop, Vec<Complex>, Vec<f64>) {
+    loop {
+        let Some(linkage) = drawn(kind, draws) else { continue };
+        let from = uniform(draws, -PI, PI);
+        let (n, span) = match of {
+            Points::Closed => (60, TAU * 59.0 / 60.0),
+            Points::Open => (30, uniform(draws, 0.5 * PI, 300.0_f64.to_radians())),
+            Points::Timed => (18, TAU * 17.0 / 18.0),
+        };
+        let angles: Vec<f64> = (0..n).map(|j| from + span * f64::from(j) / f64::from(n - 1)).collect();
+        let at = |angle: &f64| Some(linkage.joints_with(*angle, linkage.assembly())?.joints.coupler_point);
+        let Some(points) = angles.iter().map(at).collect::<Option<Vec<_>>>() else { continue };
+        if within_bounds(&linkage, &points) {
+            return (linkage, points, angles.iter().map(|a| (a - from).to_degrees()).collect());
+        }
+    }
+}
+
+/// Searches for a target, and returns the kind, the rms over the size and the milliseconds of the search.
+fn search(
+    points: &[Complex],
+    crank_deg: &[f64],
+    of: Points,
+    mechanism: &[LoopKind],
+    seed: u64,
+) -> (Option<LoopKind>, f64, f64) {
+    let points: Vec<[f64; 2]> = points.iter().copied().map(xy).collect();
+    let design = DesignSpec { mechanism: mechanism.to_vec(), ..DesignSpec::default() };
+    let mut builder = Problem::builder(points).closed(of == Points::Closed).any_longest().design(design);
+    if of == Points::Timed {
+        builder = builder.timing(crank_deg.to_vec(), AngleOffset::Free);
+    }
+    let solve = SolveSpec { candidates: 1, seed, ..SolveSpec::default() };
+    let spec = builder.solve(solve).spec().expect("a problem");
+    let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+    let finished = run(&Job::new("sliders", spec), &context).expect("a search");
+    let ms = 1e3 * finished.search_s;
+    let best = finished.record.candidates.first().filter(|c| c.accepted);
+    (best.map(|c| c.linkage.kind()), best.map_or(f64::INFINITY, |c| c.error.rms_over_size), ms)
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
+    let value = |name: &str| arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
+    let seed: u64 = value("--seed").and_then(|s| s.parse().ok()).unwrap_or(1);
+    let show = arguments.iter().any(|a| a == "--show");
+    let plain: Vec<&String> =
+        arguments.iter().filter(|a| !a.starts_with("--") && Some(*a) != value("--seed")).collect();
+    let filter = plain.iter().find(|a| a.parse::<usize>().is_err()).map_or("", |a| a.as_str());
+    let count: Option<usize> = plain.iter().find_map(|a| a.parse().ok());
+    rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("a pool");
+    let sliders = [LoopKind::SliderCrank, LoopKind::InvertedSliderCrank];
+    println!("{:<34} {:>10} {:>10} {:>10} {:>10}", "class", "recovered", "median ms", "90 %", "largest");
+    let mut seen = 0;
+    for (name, of) in [("closed-60", Points::Closed), ("open-30", Points::Open), ("timed-18", Points::Timed)]
+    {
+        for kind in sliders {
+            let class = format!("{name} {kind}");
+            if class.contains(filter) {
+                seen += 1;
+                let each = (0..count.unwrap_or(200)).map(|case| {
+                    let mut draws = stream(seed, case as u64);
+                    (kind, target(kind, of, &mut draws))
+                });
+                row(&class, each, of, &[kind], show);
+            }
+        }
+    }
+    if "mixed".contains(filter) {
+        seen += 1;
+        let kinds =
+            [LoopKind::FourBar, LoopKind::SliderCrank, LoopKind::FourBar, LoopKind::InvertedSliderCrank];
+        let each = |case: usize| {
+            let kind = kinds[case % 4];
+            (kind, target(kind, Points::Closed, &mut stream(seed, 1000 + case as u64)))
+        };
+        let cases = count.unwrap_or(40);
+        row("mixed, their own kind alone", (0..cases).map(each), Points::Closed, &[], show);
+        row("mixed, all kinds", (0..cases).map(each), Points::Closed, &LoopKind::ALL, show);
+    }
+    assert!(seen > 0, "no class has {filter} in its name");
+}
+
+/// Searches for each target, among `mechanism` or, if that is empty, among its own kind alone, and prints a row.
+fn row(
+    class: &str,
+    each: impl Iterator<Item = (LoopKind, (OneLoop, Vec<Complex>, Vec<f64>))>,
+    of: Points,
+    mechanism: &[LoopKind],
+    show: bool,
+) {
+    let (mut recovered, mut all, mut times) = (0, 0, Vec::new());
+    for (case, (kind, (linkage, points, crank_deg))) in each.enumerate() {
+        let own = [kind];
+        let (found, error, ms) =
+            search(&points, &crank_deg, of, if mechanism.is_empty() { &own } else { mechanism }, 1);
+        let is_it = error < RECOVERED && found == Some(kind);
+        all += 1;
+        recovered += usize::from(is_it);
+        times.push(ms);
+        if show && !is_it {
+            println!("  {case}: {error:.2e} in {ms:.0} ms, {linkage}");
+        }
+    }
+    times.sort_by(f64::total_cmp);
+    let tenth = times.get(times.len() * 9 / 10).copied().unwrap_or(f64::NAN);
+    println!(
+        "{class:<34} {:>10} {:>10.1} {:>10.1} {:>10.1}",
+        format!("{recovered}/{all}"),
+        median(&times).unwrap_or(f64::NAN),
+        tenth,
+        times.last().copied().unwrap_or(f64::NAN)
+    );
+}

@@ -1,0 +1,400 @@
+//! Multistart search for linkages with a slider, for paths with prescribed or free timing: drawn shapes laid on the target,
+//! Levenberg-Marquardt fits with the closure of their kind, and a stopping rule by repeated hits of the best answer.
+//!
+//! A round draws `DRAWS` shapes of one kind ([`starts`]), fits the `SHORT` that resemble the target most for a few steps and
+//! the best `LONG` of those to convergence, and has the ends judged. Kinds take turns. Rounds run in parallel in batches
+//! and are read in their order: the number of threads changes nothing but the time. The search ends when enough rounds have
+//! reached the best answer (or the search has gone on for several times as long as it took to reach it) and as many distinct
+//! answers as were asked for are known, or no new one has come for `QUIET_BATCHES` batches; an exact answer needs no second
+//! hit, and where one answer is asked for the rounds after it in its batch are not read. The best answers are fitted on to
+//! the last digit at the end.
+
+mod starts;
+
+use super::belief::Belief;
+use super::belief::NEARLY;
+use super::constants::Effort;
+use super::constants::sliders::{
+    BATCH, DRAWS, HITS, KEPT, LEAST_BATCHES, LEAST_POLISHED, LONG, LONG_FIT, NEAR_HITS, POLISH,
+    QUIET_BATCHES, QUIET_ROUNDS, QUIET_TIMES, SHORT, SHORT_FIT, TURNING,
+};
+use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
+use super::multistart::{RoundOutcome, by_merit};
+use super::polish::promising;
+use super::states::{MotionState, SearchState, of_as_many_points};
+use super::{Context, HitsSoFar};
+use crate::judge::assess::assess_on_curve;
+use crate::judge::rank::{exact_cost, searched, sort};
+use crate::judge::unwrapped::unwrapped;
+use crate::judge::warm::direction_and_offset;
+use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::{AssemblyMode, Complex, LoopKind};
+use crate::numbers::arithmetic::streams::{stream, uniform};
+use crate::numbers::optimise::levenberg_marquardt::{LmOptions, LmOutcome, solve};
+use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Reason, Repeats};
+use crate::task::forms::slider::fit::{Angles, SliderFit};
+use crate::task::forms::slider::limits::Limited;
+use crate::task::forms::slider::shape::{OFFSET, SliderShape};
+use crate::task::{AngleOffset, Problem, Timing};
+use rayon::prelude::*;
+use starts::{Start, Target, free, prescribed};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The streams of the rounds begin here, so that they differ from those of the four-bars.
+const STREAMS: u64 = 1 << 40;
+
+struct Sliders {
+    target: Target,
+    kinds: Vec<(LoopKind, Limited)>,
+    exact: f64,
+    at: MotionState,
+}
+
+/// Searches for linkages of these kinds until the best is believed, the limit is reached, or the patience is at an end;
+/// `None` if there are none to search for.
+pub(super) fn search(context: Context<'_>, kinds: &[LoopKind], allowance: Allowance) -> Option<Found> {
+    let problem = context.problem;
+    let target = Target::of(problem);
+    let kinds: Vec<(LoopKind, Limited)> = kinds
+        .iter()
+        .filter(|kind| **kind != LoopKind::FourBar)
+        .map(|kind| (*kind, Limited::of(problem, *kind, target.centre, target.size)))
+        .collect();
+    if kinds.is_empty() {
+        return None;
+    }
+    let earlier = context.keeper.and_then(|keeper| keeper.earlier().sliders.clone());
+    let earlier = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best));
+    let exact = exact_cost(problem);
+    let at = earlier.unwrap_or_else(|| MotionState { belief: Belief::new(exact), ..MotionState::default() });
+    let mut search = Sliders { target, kinds, exact, at };
+    let mut reason = drive(context, allowance, &mut search);
+    // Those of the rounds, whose best the polish takes on.
+    let (hits, near) = search.at.belief.hits();
+    if search.polish(context, allowance.limit) {
+        reason = if reason == Reason::TargetReached { reason } else { Reason::Converged };
+    }
+    let at = search.at;
+    Some(Found {
+        repeats: at.best.is_some().then(|| Repeats::new(at.independent, hits as u64, near as u64)),
+        candidates: at.found,
+        evaluations: at.evaluations,
+        reason,
+        used: vec![Sliders::PHASE.into()],
+    })
+}
+
+/// Returns the start at which a candidate stands; `None` of a four-bar, or if its loop is open at a point.
+fn start_at(problem: &Problem, target: &Target, candidate: &Candidate) -> Option<Start> {
+    let linkage = &candidate.linkage;
+    let back = 1.0 / target.size;
+    let shape = SliderShape::from_linkage(linkage)?.carried(Complex::new(back, 0.0), -target.centre * back);
+    let position = |(deg, t1): (&f64, &AssemblyMode)| {
+        let angle = deg.to_radians();
+        let at = linkage.joints_with(angle, *t1)?;
+        Some([Complex::from_polar(1.0, angle), at.coupler])
+    };
+    let (direction, offset) = direction_and_offset(problem, candidate);
+    let is_free = matches!(problem.task().timing(), Timing::Free);
+    let at = candidate.crank_deg.iter().zip(&candidate.t1_at);
+    Some(Start {
+        kind: linkage.kind(),
+        x: shape.unknowns(offset),
+        positions: if is_free { at.map(position).collect::<Option<_>>()? } else { Vec::new() },
+        assembly: linkage.assembly(),
+        direction,
+        turns: linkage.mobility().input_turns_fully(),
+    })
+}
+
+/// Returns a start of a slider-crank with its line seen in the sense that is nearest to its bounds.
+fn aligned(limits: &Limited, mut start: Start) -> Start {
+    if start.kind == LoopKind::SliderCrank {
+        let (angle, is_turned) = limits.line_angle(start.x[5]);
+        start.x[5] = angle;
+        if is_turned {
+            start.x[4] = -start.x[4];
+            start.assembly = start.assembly.opposite();
+        }
+    }
+    start
+}
+
+/// A round's fits within an allowance of evaluations.
+struct Fits<'a> {
+    context: Context<'a>,
+    target: &'a Target,
+    /// The cost, in the target's units, below which nothing is left to gain.
+    exact: f64,
+    allowance: u64,
+    used: u64,
+}
+
+impl Fits<'_> {
+    fn is_at_its_end(&self) -> bool {
+        self.context.stopped() || self.used >= self.allowance
+    }
+
+    /// Returns the fit of a start, its points in the order that they have.
+    fn fit<'f>(&'f self, limits: &'f Limited, start: &Start) -> SliderFit<'f> {
+        let problem = self.context.problem;
+        let angles = match problem.task().timing() {
+            Timing::Free => Angles::Free,
+            Timing::Prescribed { offset, .. } => {
+                Angles::Prescribed(problem.phases(start.direction), *offset, start.assembly)
+            }
+        };
+        let fit = SliderFit {
+            kind: start.kind,
+            points: &self.target.points,
+            weights: &self.target.weights,
+            angles,
+            limits,
+            sense: 0.0,
+            ends_meet: problem.task().repeats_first(),
+        };
+        if problem.order_required() { fit.in_order(&start.x, &start.positions) } else { fit }
+    }
+
+    /// Fits from a start, and returns the end with its merit; `None` if it is given up.
+    fn run(&mut self, limits: &Limited, start: Start, effort: Effort) -> Option<(f64, Start)> {
+        if self.is_at_its_end() {
+            return None;
+        }
+        let (limits, start) = (limits.turning(start.turns), aligned(limits, start));
+        let weight: f64 = self.target.weights.iter().sum();
+        let options = LmOptions {
+            max_steps: effort.steps,
+            max_rounds: effort.rounds,
+            max_evaluations: self.allowance - self.used,
+            relative_reduction: effort.relative_reduction,
+            exact_cost: 1e-6 * self.exact,
+            feasibility: 1e-9,
+            hopeless_cost: 0.04 * weight,
+        };
+        let fit = self.fit(&limits, &start);
+        let (positions, context) = (start.positions.clone(), self.context);
+        let end = solve(&fit, start.x, positions, &options, &|| context.stopped());
+        self.used += end.evaluations;
+        let usable = !matches!(end.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
+        let merit = end.cost + weight * end.violation * end.violation;
+        usable.then_some((merit, Start { x: end.x, positions: end.state, ..start }))
+    }
+
+    /// Returns the judged candidate of an end; the distances to its whole curve are measured later, if it is listed.
+    fn judged(&self, end: &Start) -> Option<Candidate> {
+        const UNKNOWN: CurveErrorRecord = CurveErrorRecord { sum_sq: 0.0, rms: 0.0, max: 0.0 };
+        let problem = self.context.problem;
+        let Target { size, centre, .. } = *self.target;
+        let unit = SliderShape::of(end.kind, &end.x)?;
+        let shape = unit.carried(Complex::new(size, 0.0), centre);
+        let (linkage, crank_deg, assemblies) = match problem.task().timing() {
+            Timing::Free => {
+                let signs: Vec<AssemblyMode> = end.positions.iter().map(|p| unit.assembly_of(*p)).collect();
+                let first = *signs.first()?;
+                let linkage = shape.linkage(first).ok()?;
+                // Seen from the first position, whose sign is +1.
+                let own = |sign: AssemblyMode| AssemblyMode::of(sign.sign() * first.sign());
+                let angles = end.positions.iter().map(|[e, _]| e.arg()).collect();
+                let (crank_deg, t1) =
+                    unwrapped(problem, linkage, angles, signs.into_iter().map(own).collect());
+                (linkage, crank_deg, t1)
+            }
+            Timing::Prescribed { offset, .. } => {
+                let linkage = shape.linkage(end.assembly).ok()?;
+                let base = match offset {
+                    AngleOffset::Free => wrapped(end.x[OFFSET]).to_degrees(),
+                    AngleOffset::Fixed => 0.0,
+                    AngleOffset::Ground => linkage.ground_angle().to_degrees(),
+                };
+                let written = &problem.spec().task.timing.as_ref()?.crank_deg;
+                let run = problem.run(end.direction);
+                let crank_deg: Vec<f64> = written.iter().map(|deg| base + run * deg).collect();
+                let t1 = vec![AssemblyMode::Plus; crank_deg.len()];
+                (linkage, crank_deg, t1)
+            }
+        };
+        let mut candidate =
+            assess_on_curve(problem, linkage, (&crank_deg, &assemblies), None, Some(UNKNOWN))?;
+        let ErrorRecord { sum_sq, rms, max, .. } = candidate.error;
+        candidate.error.to_curve = CurveErrorRecord { sum_sq, rms, max };
+        Some(candidate)
+    }
+}
+
+impl Sliders {
+    /// Runs round `index` of the search with at most `allowance` evaluations; nothing of it if a round before it in its
+    /// batch was exact, of which `first_exact` holds the least index. Such a round is not read.
+    fn round(
+        &self,
+        context: Context<'_>,
+        index: u64,
+        allowance: u64,
+        first_exact: &AtomicU64,
+    ) -> RoundOutcome {
+        if first_exact.load(Ordering::Relaxed) < index {
+            return RoundOutcome::default();
+        }
+        let problem = context.problem;
+        let target = &self.target;
+        let exact = self.exact / (target.size * target.size);
+        let mut fits = Fits { context, target, exact, allowance, used: 0 };
+        let mut outcome = RoundOutcome::default();
+        let mut draws = stream(problem.spec().solve.seed, STREAMS + index);
+        let (kind, limits) = &self.kinds[index as usize % self.kinds.len()];
+        let is_free = matches!(problem.task().timing(), Timing::Free);
+        let mut drawn: Vec<(f64, Start)> = Vec::new();
+        for _ in 0..DRAWS {
+            if fits.is_at_its_end() {
+                break;
+            }
+            outcome.draws += 1;
+            fits.used += 1;
+            let turns = limits.must_turn || uniform(&mut draws, 0.0, 1.0) < TURNING;
+            drawn.extend(if is_free {
+                free(problem, target, (*kind, turns), &mut draws)
+            } else {
+                prescribed(problem, target, (*kind, turns), &mut draws)
+            });
+        }
+        by_merit(&mut drawn, SHORT);
+        let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
+        for (_, start) in drawn {
+            fitted.extend(fits.run(limits, start, SHORT_FIT));
+        }
+        by_merit(&mut fitted, LONG);
+        let judging = context.judging();
+        for (_, start) in fitted {
+            let Some((_, end)) = fits.run(limits, start, LONG_FIT) else { continue };
+            if !judging.may_go_on() {
+                break;
+            }
+            outcome.found.extend(fits.judged(&end));
+            if outcome.found.last().is_some_and(|found| self.is_exact(problem, found)) {
+                if self.is_one_enough(problem) {
+                    first_exact.fetch_min(index, Ordering::Relaxed);
+                }
+                break;
+            }
+        }
+        outcome.evaluations = context.cost(fits.used);
+        outcome
+    }
+
+    fn is_exact(&self, problem: &Problem, candidate: &Candidate) -> bool {
+        candidate.accepted && searched(problem, candidate) <= self.exact
+    }
+
+    /// Returns whether one exact answer ends the search.
+    fn is_one_enough(&self, problem: &Problem) -> bool {
+        problem.spec().solve.candidates <= 1
+    }
+
+    /// Fits the best candidates on to the last digit, within a limit of evaluations: along a valley, or on a limit, a round's
+    /// fit may end before it. Returns whether the best has become better.
+    fn polish(&mut self, context: Context<'_>, limit: u64) -> bool {
+        let problem = context.problem;
+        let left = limit.saturating_sub(self.at.evaluations.objective);
+        let most = (2 * problem.spec().solve.candidates).max(LEAST_POLISHED);
+        let best = |search: &Sliders| search.at.best.as_ref().map(|best| searched(problem, best));
+        let before = best(self);
+        if left == 0 || context.stopped() || before.is_some_and(|before| before <= self.exact) {
+            return false;
+        }
+        let exact = self.exact / (self.target.size * self.target.size);
+        let share = left / most as u64;
+        let polished = |candidate: &Candidate| {
+            let mut fits = Fits { context, target: &self.target, exact, allowance: share, used: 0 };
+            let start = start_at(problem, &self.target, candidate)?;
+            let (_, limits) = self.kinds.iter().find(|(kind, _)| *kind == start.kind)?;
+            let end = fits.run(limits, start, POLISH);
+            Some((end.and_then(|(_, end)| fits.judged(&end)), fits.used))
+        };
+        let first: Vec<Candidate> = self.at.found.iter().take(most).cloned().collect();
+        let ends: Vec<Option<(Option<Candidate>, u64)>> = first.par_iter().map(polished).collect();
+        for (candidate, used) in ends.into_iter().flatten() {
+            self.at.evaluations += context.cost(used);
+            if let Some(candidate) = candidate {
+                self.take(context, &candidate);
+                self.at.found.push(candidate);
+            }
+        }
+        sort(problem, &mut self.at.found);
+        best(self) < before
+    }
+
+    /// Takes a candidate as the best if it is better.
+    fn take(&mut self, context: Context<'_>, candidate: &Candidate) {
+        if !promising(context.problem, candidate) {
+            return;
+        }
+        let error = searched(context.problem, candidate);
+        self.at.belief.came_to(error);
+        let bar = self.at.best.as_ref().map_or(f64::INFINITY, |best| searched(context.problem, best));
+        if error < bar {
+            if error < bar * (1.0 - NEARLY) {
+                self.at.reached = self.at.evaluations.objective;
+            }
+            self.at.best = Some(candidate.clone());
+        }
+    }
+}
+
+impl Strategy for Sliders {
+    type Batch = Vec<RoundOutcome>;
+    const PHASE: &'static str = "least-squares";
+
+    fn save(&self, state: &mut SearchState) {
+        state.sliders = Some(self.at.clone());
+    }
+
+    fn standing(&self) -> Standing<'_> {
+        let MotionState { ref found, ref best, ref belief, evaluations, draws, .. } = self.at;
+        Standing {
+            evaluations: evaluations.objective,
+            draws,
+            best: best.as_ref(),
+            nearest: found.first(),
+            hits: best.as_ref().map(|_| HitsSoFar { came: belief.hits().0, wanted: HITS }),
+            is_cut: false,
+        }
+    }
+
+    fn run(&mut self, context: Context<'_>, left: u64) -> (Self::Batch, bool) {
+        let first_exact = AtomicU64::new(u64::MAX);
+        let run = |i, allowance| self.round(context, self.at.batch * BATCH + i, allowance, &first_exact);
+        in_parallel((left, BATCH), run, |round| round.evaluations.objective)
+    }
+
+    fn read(&mut self, context: Context<'_>, batch: Self::Batch) {
+        self.at.batch += 1;
+        for outcome in batch {
+            self.at.draws += outcome.draws;
+            self.at.evaluations += outcome.evaluations;
+            for candidate in outcome.found {
+                self.take(context, &candidate);
+                self.at.found.push(candidate);
+            }
+            self.at.independent += 1;
+            self.at.belief.end_batch();
+            let is_exact = |best: &Candidate| self.is_exact(context.problem, best);
+            if self.is_one_enough(context.problem) && self.at.best.as_ref().is_some_and(is_exact) {
+                break;
+            }
+        }
+        sort(context.problem, &mut self.at.found);
+        self.at.found.truncate(KEPT);
+    }
+
+    fn is_done(&mut self, context: Context<'_>) -> bool {
+        let at = &mut self.at;
+        let wanted = context.problem.spec().solve.candidates;
+        let is_exact = at.best.as_ref().is_some_and(|best| searched(context.problem, best) <= self.exact);
+        let (hits, near) = at.belief.hits();
+        let is_quiet = at.independent >= QUIET_ROUNDS && at.evaluations.objective >= QUIET_TIMES * at.reached;
+        let is_believed =
+            at.batch >= LEAST_BATCHES && (hits >= HITS || near >= NEAR_HITS || is_quiet && at.best.is_some());
+        (is_believed || is_exact)
+            && are_enough(context, &at.found, wanted, (&mut at.known, &mut at.quiet), QUIET_BATCHES)
+    }
+}

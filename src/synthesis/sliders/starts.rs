@@ -1,0 +1,343 @@
+//! Starts of linkages with a slider: shapes drawn by kind, laid on the target by similarity or by linear least squares.
+//!
+//! *Free timing.* The curve of a drawn shape, as points evenly along it, is laid on the target by the similarity of least
+//! squares, at every shift of a closed target and at a few stretches of an open one; the points' positions follow from
+//! their arc length ([`crate::synthesis::atlas`]).
+//!
+//! *Prescribed timing.* At the drawn shape's positions A, K and Z of P = A + K e + Z u follow from linear least squares.
+
+use crate::mechanism::{AssemblyMode, Circuit, Complex, InputArc, LoopKind};
+use crate::numbers::arithmetic::streams::{Stream, below, uniform};
+use crate::synthesis::atlas::{EVEN, Even, ON_ARC, OnArc, TRACED, Traced, arc_misfits, fraction};
+use crate::task::forms::slider::shape::{Closure, OFFSET, SliderShape, Unknowns};
+use crate::task::forms::torus::Positions;
+use crate::task::{AngleOffset, Problem, Timing};
+use std::f64::consts::{PI, TAU};
+
+/// A start of a fit.
+#[derive(Clone, Debug)]
+pub(super) struct Start {
+    pub(super) kind: LoopKind,
+    pub(super) x: Unknowns,
+    /// The positions of free timing.
+    pub(super) positions: Positions,
+    /// The assembly and the direction of prescribed timing.
+    pub(super) assembly: AssemblyMode,
+    pub(super) direction: f64,
+    /// Whether the crank of the drawn shape turns fully.
+    pub(super) turns: bool,
+}
+
+/// The target in units of its size around its centre, as starts and fits see it.
+#[derive(Clone, Debug)]
+pub(super) struct Target {
+    pub(super) points: Vec<Complex>,
+    pub(super) weights: Vec<f64>,
+    pub(super) centre: Complex,
+    pub(super) size: f64,
+    /// The arc length up to each point, in parts of the whole.
+    along: Vec<f64>,
+    is_closed: bool,
+    even: Option<Even>,
+    on_arc: Option<OnArc>,
+}
+
+impl Target {
+    pub(super) fn of(problem: &Problem) -> Target {
+        let task = problem.task();
+        let (centre, size) = (task.centre(), task.size());
+        let points: Vec<Complex> = task.points().iter().map(|p| (p - centre) / size).collect();
+        let is_closed = task.closed() || task.repeats_first();
+        let mut along = vec![0.0];
+        for w in points.windows(2) {
+            along.push(along[along.len() - 1] + (w[1] - w[0]).norm());
+        }
+        let mut whole = along[along.len() - 1];
+        if task.closed() && !task.repeats_first() {
+            whole += (points[0] - points[points.len() - 1]).norm();
+        }
+        along.iter_mut().for_each(|s| *s /= whole);
+        let distinct = if task.repeats_first() { points.len() - 1 } else { points.len() };
+        let even = Traced::of(points[..distinct].to_vec()).filter(|_| is_closed);
+        let on_arc = || {
+            let at = |m: usize| {
+                let s = m as f64 / (ON_ARC - 1) as f64;
+                let next = along.partition_point(|length| *length < s).clamp(1, points.len() - 1);
+                let (from, to) = (along[next - 1], along[next]);
+                let part = if to > from { ((s - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
+                points[next - 1] + (points[next] - points[next - 1]) * part
+            };
+            OnArc::of(&(0..ON_ARC).map(at).collect::<Vec<_>>())
+        };
+        Target {
+            even: even.and_then(|traced| Even::of(&traced.even())),
+            on_arc: if is_closed { None } else { on_arc() },
+            weights: task.weights().to_vec(),
+            points,
+            centre,
+            size,
+            along,
+            is_closed,
+        }
+    }
+}
+
+fn log_uniform(stream: &mut Stream, low: f64, high: f64) -> f64 {
+    uniform(stream, low.ln(), high.ln()).exp()
+}
+
+fn sign(stream: &mut Stream) -> f64 {
+    if below(stream, 2) == 0 { 1.0 } else { -1.0 }
+}
+
+/// Draws a shape with A in the origin: a slider-crank with b = 1 and its line along the x axis, or an inverted one with
+/// a = 1 and B on the x axis.
+fn shape(stream: &mut Stream, kind: LoopKind, turns: bool) -> SliderShape {
+    let angle = uniform(stream, -PI, PI);
+    let reach = log_uniform(stream, 0.05, 3.0);
+    let polar = |length: f64| Complex::from_polar(reach * length, angle);
+    let zero = Complex::new(0.0, 0.0);
+    if kind == LoopKind::SliderCrank {
+        let (crank, height) = if turns {
+            let used = 1.0 - log_uniform(stream, 1e-3, 0.95);
+            let part = log_uniform(stream, 0.02, 1.0);
+            (used * part, used * (1.0 - part))
+        } else {
+            let crank = log_uniform(stream, 0.05, 5.0);
+            (crank, uniform(stream, (1.0 - crank).max(0.0), 1.0 + crank))
+        };
+        let height = sign(stream) * height;
+        let closure = Closure::Line { coupler: 1.0, height, direction: Complex::new(1.0, 0.0) };
+        let offset = Complex::new(0.5, 0.0) + polar(crank.max(1.0));
+        SliderShape { crank_pivot: zero, crank, offset, closure }
+    } else {
+        let ground = log_uniform(stream, 0.05, 20.0);
+        let apart = (ground - 1.0).abs();
+        let offset = if turns {
+            uniform(stream, 0.0, 0.999) * apart
+        } else {
+            uniform(stream, apart, 0.999 * (1.0 + ground))
+        };
+        let closure = Closure::Block { pivot: Complex::new(ground, 0.0), offset: sign(stream) * offset };
+        SliderShape { crank_pivot: zero, crank: 1.0, offset: polar(ground.max(1.0)), closure }
+    }
+}
+
+/// A drawn shape on one of its circuits.
+struct Drawn {
+    shape: SliderShape,
+    /// The sign of the root, if the crank turns fully.
+    sign: f64,
+    arc: Option<InputArc>,
+}
+
+impl Drawn {
+    fn of(stream: &mut Stream, kind: LoopKind, turns: bool) -> Option<Drawn> {
+        let shape = shape(stream, kind, turns);
+        let (sign, which) = (sign(stream), below(stream, 2) as u8);
+        let mobility = shape.linkage(AssemblyMode::Plus).ok()?.mobility();
+        Some(Drawn { shape, sign, arc: mobility.arc(Circuit { index: which }) })
+    }
+
+    /// Returns the position at a parameter in [0, 1) of the circuit.
+    fn at(&self, parameter: f64) -> Option<[Complex; 2]> {
+        let psi = TAU * parameter;
+        let (angle, sign) = match self.arc {
+            None => (psi, self.sign),
+            // Slightly off the toggles, where the assembly is undecided.
+            Some(arc) => (
+                arc.middle + (1.0 - 1e-9) * arc.half_width * psi.sin(),
+                if psi.cos() < 0.0 { -1.0 } else { 1.0 },
+            ),
+        };
+        let e = Complex::from_polar(1.0, angle);
+        Some([e, self.shape.coupler_direction(e, sign)?])
+    }
+
+    /// Samples the curve, half a step off the toggles.
+    fn trace(&self) -> Option<Traced> {
+        let at = |i: usize| self.at((i as f64 + 0.5) / TRACED as f64).map(|p| self.shape.coupler_point(p));
+        Traced::of((0..TRACED).map(at).collect::<Option<_>>()?)
+    }
+
+    /// Returns the half of the circuit, between two toggles, on which a place of the curve lies.
+    fn half(traced: &Traced, place: f64) -> bool {
+        fraction(traced.parameter(place) + 0.25) < 0.5
+    }
+}
+
+/// A stretch of a drawn curve laid on the target.
+struct Laid {
+    begin: f64,
+    span: f64,
+    direction: f64,
+    misfit: f64,
+}
+
+/// Stretches of each drawn curve that are laid on an open target.
+const STRETCHES: usize = 6;
+/// Least and greatest length of a stretch, in parts of the curve's.
+const SPANS: (f64, f64) = (0.08, 0.97);
+
+/// Draws a start of free timing with its misfit, the residual of the similarity relative to the target's spread; `None`
+/// for a shape that cannot be laid on the target.
+pub(super) fn free(
+    problem: &Problem,
+    target: &Target,
+    (kind, turns): (LoopKind, bool),
+    stream: &mut Stream,
+) -> Option<(f64, Start)> {
+    let drawn = Drawn::of(stream, kind, turns)?;
+    if target.is_closed && drawn.arc.is_some() && !problem.branch_any() {
+        return None;
+    }
+    let traced = drawn.trace()?;
+    let directions = problem.directions();
+    let laid = match (&target.even, &target.on_arc) {
+        (Some(wanted), _) => {
+            let even = Even::of(&traced.even())?;
+            let along = |&direction: &f64| {
+                let misfits = even.misfits(wanted, direction > 0.0).into_iter().map(f64::from);
+                misfits.enumerate().map(move |(shift, misfit)| {
+                    let begin = shift as f64 / EVEN as f64;
+                    Laid { begin, span: 1.0, direction, misfit }
+                })
+            };
+            let all = directions.iter().flat_map(along);
+            all.min_by(|one, other| one.misfit.total_cmp(&other.misfit))?
+        }
+        (None, Some(wanted)) => {
+            let mut best: Option<Laid> = None;
+            for _ in 0..STRETCHES {
+                let (begin, span) = (uniform(stream, 0.0, 1.0), uniform(stream, SPANS.0, SPANS.1));
+                let place = |m: usize| fraction(begin + span * m as f64 / (ON_ARC - 1) as f64);
+                let first = Drawn::half(&traced, begin);
+                let passes = || (1..ON_ARC).any(|m| Drawn::half(&traced, place(m)) != first);
+                if drawn.arc.is_some() && !problem.branch_any() && passes() {
+                    continue;
+                }
+                let points: Vec<Complex> =
+                    (0..ON_ARC).map(|m| traced.point(traced.locate(place(m)))).collect();
+                let Some(own) = OnArc::of(&points) else { continue };
+                let [ahead, back] = arc_misfits(&own, wanted).map(f64::from);
+                for &direction in directions {
+                    let misfit = if direction > 0.0 { ahead } else { back };
+                    let begin = if direction > 0.0 { begin } else { fraction(begin + span) };
+                    if best.as_ref().is_none_or(|best| misfit < best.misfit) {
+                        best = Some(Laid { begin, span, direction, misfit });
+                    }
+                }
+            }
+            best?
+        }
+        (None, None) => return None,
+    };
+    let place = |s: &f64| (laid.begin + laid.direction * laid.span * s).rem_euclid(1.0);
+    let positions: Option<Positions> =
+        target.along.iter().map(|s| drawn.at(traced.parameter(place(s)))).collect();
+    let positions = positions?;
+    let (scale, shift) = similarity(target, &drawn.shape, &positions)?;
+    let turn = scale / scale.norm();
+    let start = Start {
+        kind,
+        x: drawn.shape.carried(scale, shift).unknowns(0.0),
+        positions: positions.into_iter().map(|[e, u]| [e * turn, u * turn]).collect(),
+        assembly: AssemblyMode::Plus,
+        direction: laid.direction,
+        turns: drawn.arc.is_none(),
+    };
+    Some((laid.misfit, start))
+}
+
+/// Returns the similarity p -> shift + scale p that brings the coupler points at positions to the target.
+fn similarity(target: &Target, shape: &SliderShape, positions: &Positions) -> Option<(Complex, Complex)> {
+    let points: Vec<Complex> = positions.iter().map(|p| shape.coupler_point(*p)).collect();
+    let weight: f64 = target.weights.iter().sum();
+    let mean = |of: &[Complex]| of.iter().zip(&target.weights).map(|(p, w)| p * w).sum::<Complex>() / weight;
+    let (own, wanted) = (mean(&points), mean(&target.points));
+    let (mut both, mut sq) = (Complex::new(0.0, 0.0), 0.0);
+    for ((p, t), w) in points.iter().zip(&target.points).zip(&target.weights) {
+        both += (p - own).conj() * (t - wanted) * w;
+        sq += (p - own).norm_sqr() * w;
+    }
+    let scale = both / sq;
+    (scale.norm() > 0.0 && scale.is_finite()).then(|| (scale, wanted - scale * own))
+}
+
+/// Draws a start of prescribed timing with the relative residual of its linear fit.
+pub(super) fn prescribed(
+    problem: &Problem,
+    target: &Target,
+    (kind, turns): (LoopKind, bool),
+    stream: &mut Stream,
+) -> Option<(f64, Start)> {
+    let Timing::Prescribed { offset, .. } = problem.task().timing() else { return None };
+    let shape = shape(stream, kind, turns);
+    let sign = sign(stream);
+    let directions = problem.directions();
+    let direction = directions[below(stream, directions.len())];
+    let drawn = uniform(stream, -PI, PI);
+    let angle = if *offset == AngleOffset::Ground { 0.0 } else { drawn };
+    let turn = Complex::from_polar(1.0, angle);
+    let position = |phase: &Complex| {
+        let e = phase * turn;
+        Some([e, shape.coupler_direction(e, sign)?])
+    };
+    let phases = problem.phases(direction);
+    let positions: Positions = phases.iter().map(position).collect::<Option<_>>()?;
+    let Linear { pivot, crank, coupler, misfit } = linear(target, &positions)?;
+    let scale = crank / shape.crank;
+    let turned = crank / crank.norm();
+    let mut x = shape.carried(scale, pivot).unknowns(0.0);
+    let z = coupler / turned;
+    (x[OFFSET - 2], x[OFFSET - 1]) = (z.re, z.im);
+    if *offset == AngleOffset::Free {
+        x[OFFSET] = angle + turned.arg();
+    }
+    let assembly = AssemblyMode::of(sign);
+    Some((misfit, Start { kind, x, positions: Positions::new(), assembly, direction, turns }))
+}
+
+/// The linear part of a fit: P = A + K e + Z u, with its relative residual.
+struct Linear {
+    pivot: Complex,
+    crank: Complex,
+    coupler: Complex,
+    misfit: f64,
+}
+
+fn linear(target: &Target, positions: &Positions) -> Option<Linear> {
+    let weight: f64 = target.weights.iter().sum();
+    let zero = Complex::new(0.0, 0.0);
+    let (mut e_mean, mut u_mean, mut t_mean) = (zero, zero, zero);
+    for (([e, u], t), w) in positions.iter().zip(&target.points).zip(&target.weights) {
+        e_mean += e * (w / weight);
+        u_mean += u * (w / weight);
+        t_mean += t * (w / weight);
+    }
+    let (mut ee, mut uu, mut tt) = (0.0, 0.0, 0.0);
+    let (mut eu, mut et, mut ut) = (zero, zero, zero);
+    for (([e, u], t), w) in positions.iter().zip(&target.points).zip(&target.weights) {
+        let (e, u, t) = (e - e_mean, u - u_mean, t - t_mean);
+        ee += w * e.norm_sqr();
+        uu += w * u.norm_sqr();
+        tt += w * t.norm_sqr();
+        eu += e.conj() * u * *w;
+        et += e.conj() * t * *w;
+        ut += u.conj() * t * *w;
+    }
+    let determinant = ee * uu - eu.norm_sqr();
+    if determinant.is_nan() || determinant <= 1e-12 * ee * uu {
+        return None;
+    }
+    let crank = (et * uu - eu * ut) / determinant;
+    let coupler = (ut * ee - eu.conj() * et) / determinant;
+    let explained = (crank.conj() * et).re + (coupler.conj() * ut).re;
+    let is_usable = crank.norm() > 0.0 && crank.is_finite() && coupler.is_finite();
+    is_usable.then(|| Linear {
+        pivot: t_mean - crank * e_mean - coupler * u_mean,
+        crank,
+        coupler,
+        misfit: ((tt - explained) / tt).max(0.0),
+    })
+}

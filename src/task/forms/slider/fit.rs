@@ -1,0 +1,363 @@
+//! The fit of a linkage with a slider to the points of a path.
+//!
+//! *Free timing.* A position is a pair of unit vectors (e_j, u_j), crank and coupler, on the curve G(e, u) = 0 of the
+//! closure; as with four-bars ([`crate::task::forms::torus`]), with G_phi, G_w its derivatives by both angles and
+//! n2 = G_phi^2 + G_w^2:
+//!
+//! ```text
+//! P   = A + a e + Z u
+//! t   = (i a e G_w - i Z u G_phi) / sqrt(n2)                      dP along the position's own curve
+//! dP/dx_k = direct_k - (i a e G_phi + i Z u G_w)/n2 G_k           the least-norm return to the curve
+//! ```
+//!
+//! *Prescribed timing.* e_j is given up to an offset; u_j follows in closed form in one assembly:
+//!
+//! ```text
+//! dP/dx_k = direct_k - i Z u G_k/G_w,     dP/dphi = i a e - i Z u G_phi/G_w
+//! ```
+
+use super::limits::Limited;
+use super::shape::{Closure, Miss, OFFSET, SHAPE, SliderShape, UNKNOWNS, Unknowns};
+use crate::mechanism::effort::computed;
+use crate::mechanism::four_bar::mobility::ways_round;
+use crate::mechanism::{AssemblyMode, Complex, LoopKind, turned, xy};
+use crate::numbers::optimise::levenberg_marquardt::{
+    BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
+};
+use crate::task::AngleOffset;
+use crate::task::forms::torus::Positions;
+
+/// Most Newton steps that bring a position back to its curve; each squares the miss.
+const RETURN_STEPS: usize = 12;
+/// Tolerance for a position on its curve: its miss over the largest length.
+const ON_CURVE: f64 = 1e-14;
+/// A distance between points that no step can close.
+const FAR_APART: f64 = 3.0;
+
+/// The crank angles of a fit.
+#[derive(Clone, Debug)]
+pub enum Angles {
+    /// Each point has its own.
+    Free,
+    /// Given from the x axis, from the ground, or up to an offset, with the assembly of all positions.
+    Prescribed(Vec<Complex>, AngleOffset, AssemblyMode),
+}
+
+/// A path and the limits of a kind of linkage, in units of the target's size around its centre.
+#[derive(Clone, Debug)]
+pub struct SliderFit<'a> {
+    /// The kind.
+    pub kind: LoopKind,
+    /// The points.
+    pub points: &'a [Complex],
+    /// Their weights.
+    pub weights: &'a [f64],
+    /// The crank angles.
+    pub angles: Angles,
+    /// The limits.
+    pub limits: &'a Limited,
+    /// The sense along the curves in which the points follow each other; 0: no order is kept.
+    pub sense: f64,
+    /// Whether the last point must not pass the first one from behind.
+    pub ends_meet: bool,
+}
+
+impl SliderFit<'_> {
+    /// Returns the positions at the prescribed crank angles; `None` if the loop is open at one.
+    pub fn prescribed(&self, x: &Unknowns, shape: &SliderShape) -> Option<Positions> {
+        let Angles::Prescribed(phases, offset, assembly) = &self.angles else { return None };
+        let turn = Complex::from_polar(1.0, base_angle(x, shape, *offset));
+        let position = |phase: &Complex| {
+            let e = phase * turn;
+            Some([e, shape.coupler_direction(e, assembly.sign())?])
+        };
+        phases.iter().map(position).collect()
+    }
+
+    /// Returns the same fit with the points held in their present order around the curve.
+    #[must_use]
+    pub fn in_order(mut self, x: &Unknowns, positions: &Positions) -> Self {
+        self.sense = SliderShape::of(self.kind, x).map_or(0.0, |shape| orientation(&shape, positions));
+        self
+    }
+
+    fn forward(&self) -> f64 {
+        if self.sense < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    fn is_free(&self) -> bool {
+        matches!(self.angles, Angles::Free)
+    }
+
+    /// Brings positions to the curves of a linkage; `false` if one does not get there.
+    pub fn settle(shape: &SliderShape, positions: &mut Positions) -> bool {
+        computed(RETURN_STEPS * positions.len());
+        positions.iter_mut().all(|position| settled(shape, position))
+    }
+
+    /// Returns the row of a limit with its derivatives.
+    fn row(
+        &self,
+        limit: &super::limits::Bar,
+        shape: &SliderShape,
+        state: &Positions,
+    ) -> ConstraintRow<UNKNOWNS> {
+        let mut gradient = [0.0; UNKNOWNS];
+        gradient[..SHAPE].copy_from_slice(&limit.by_shape);
+        let mut own = [None; MOST_OWN];
+        if let Some((j, [by_crank, by_coupler])) = limit.at {
+            let miss = shape.miss(state[j]);
+            let n2 = miss.by_crank * miss.by_crank + miss.by_coupler * miss.by_coupler;
+            match &self.angles {
+                Angles::Free if n2 > 0.0 => {
+                    let back = (by_crank * miss.by_crank + by_coupler * miss.by_coupler) / n2;
+                    for (out, by) in gradient.iter_mut().zip(miss.by_shape) {
+                        *out -= back * by;
+                    }
+                    let along = by_crank * miss.by_coupler - by_coupler * miss.by_crank;
+                    own[0] = Some((j, self.forward() * along / n2.sqrt()));
+                }
+                Angles::Prescribed(_, offset, _) if miss.by_coupler != 0.0 => {
+                    let back = by_coupler / miss.by_coupler;
+                    for (out, by) in gradient.iter_mut().zip(miss.by_shape) {
+                        *out -= back * by;
+                    }
+                    add_turn(&mut gradient, by_crank - back * miss.by_crank, shape, *offset);
+                }
+                Angles::Free | Angles::Prescribed(..) => {}
+            }
+        }
+        ConstraintRow { value: limit.value, gradient, own }
+    }
+}
+
+/// Returns the angle that prescribed increments are added to.
+fn base_angle(x: &Unknowns, shape: &SliderShape, offset: AngleOffset) -> f64 {
+    match (offset, shape.closure) {
+        (AngleOffset::Free, _) => x[OFFSET],
+        (AngleOffset::Fixed, _) => 0.0,
+        (AngleOffset::Ground, Closure::Line { direction, .. }) => direction.arg(),
+        (AngleOffset::Ground, Closure::Block { pivot, .. }) => (pivot - shape.crank_pivot).arg(),
+    }
+}
+
+/// Adds the derivatives of something that changes by `by` with the crank's angle.
+fn add_turn(gradient: &mut [f64; UNKNOWNS], by: f64, shape: &SliderShape, offset: AngleOffset) {
+    match (offset, shape.closure) {
+        (AngleOffset::Free, _) => gradient[OFFSET] += by,
+        (AngleOffset::Fixed, _) => {}
+        (AngleOffset::Ground, Closure::Line { .. }) => gradient[5] += by,
+        (AngleOffset::Ground, Closure::Block { pivot, .. }) => {
+            let ground = pivot - shape.crank_pivot;
+            let [x, y] = xy(turned(ground) / ground.norm_sqr());
+            for (i, part) in [(0, -x), (1, -y), (3, x), (4, y)] {
+                gradient[i] += by * part;
+            }
+        }
+    }
+}
+
+/// Brings a position to its curve by least-norm Newton steps of at most a radian.
+fn settled(shape: &SliderShape, [e, u]: &mut [Complex; 2]) -> bool {
+    let near = ON_CURVE * shape.largest();
+    for _ in 0..=RETURN_STEPS {
+        let miss = shape.miss([*e, *u]);
+        if miss.value.abs() <= near {
+            return true;
+        }
+        let n2 = miss.by_crank * miss.by_crank + miss.by_coupler * miss.by_coupler;
+        if n2.is_nan() || n2 == 0.0 {
+            return false;
+        }
+        let step = -miss.value / n2;
+        let longest = (step * n2.sqrt()).abs().max(1.0);
+        turn_by(e, step * miss.by_crank / longest);
+        turn_by(u, step * miss.by_coupler / longest);
+    }
+    false
+}
+
+fn turn_by(z: &mut Complex, angle: f64) {
+    let h = Complex::new(1.0, 0.5 * angle);
+    *z = *z * h / h.conj();
+    *z *= 1.5 - 0.5 * z.norm_sqr();
+}
+
+/// Returns +1 if the points run along the tangents of their curve, -1 if against; 0 if that is undecided. As with four-bars.
+fn orientation(shape: &SliderShape, positions: &Positions) -> f64 {
+    let Some(first) = positions.first() else { return 0.0 };
+    let assembly = shape.assembly_of(*first);
+    let Ok(linkage) = shape.linkage(assembly) else { return 0.0 };
+    let mobility = linkage.mobility();
+    // The linkage's own t1 is that of the first position.
+    let sign = |p: &[Complex; 2]| {
+        if shape.assembly_of(*p) == assembly { AssemblyMode::Plus } else { AssemblyMode::Minus }
+    };
+    let arc = mobility.arc(mobility.branch(first[0].arg(), AssemblyMode::Plus).circuit);
+    let parameter = |p: &[Complex; 2]| arc.map_or(p[0].arg(), |arc| arc.parameter(p[0].arg(), sign(p)));
+    let steps = positions.windows(2).map(|w| parameter(&w[1]) - parameter(&w[0]));
+    let [forward, backward] = ways_round(steps, 0.0);
+    let runs = if backward < forward { -1.0 } else { 1.0 };
+    let by_coupler = shape.miss(*first).by_coupler;
+    if by_coupler == 0.0 { 0.0 } else { runs * by_coupler.signum() }
+}
+
+/// Returns the unit tangent (dphi, domega) of the curve at a position.
+fn tangent_of(miss: &Miss) -> Option<[f64; 2]> {
+    let length = (miss.by_crank * miss.by_crank + miss.by_coupler * miss.by_coupler).sqrt();
+    (length > 0.0).then(|| [miss.by_coupler / length, -miss.by_crank / length])
+}
+
+/// Returns the distance along the curve from one position to a near one; `None` for positions that are far apart.
+fn way(from: [Complex; 2], from_tangent: [f64; 2], to: [Complex; 2], to_tangent: [f64; 2]) -> Option<f64> {
+    let turn = |i: usize| {
+        let z = to[i] * from[i].conj();
+        (z.re > 0.5).then_some(z.im)
+    };
+    let alike = from_tangent[0] * to_tangent[0] + from_tangent[1] * to_tangent[1];
+    let mean = [0.5 * (from_tangent[0] + to_tangent[0]), 0.5 * (from_tangent[1] + to_tangent[1])];
+    let (by_e, by_u) = (turn(0)?, turn(1)?);
+    (alike > 0.3).then_some(by_e * mean[0] + by_u * mean[1])
+}
+
+impl BlockLeastSquares<UNKNOWNS> for SliderFit<'_> {
+    /// The positions; of prescribed crank angles they follow from the unknowns and are empty.
+    type State = Positions;
+
+    fn points(&self) -> usize {
+        self.points.len()
+    }
+
+    fn bounds(&self) -> &[(f64, f64); UNKNOWNS] {
+        &self.limits.bounds
+    }
+
+    fn cost(&self, x: &Unknowns, state: &Positions) -> Option<f64> {
+        let shape = SliderShape::of(self.kind, x)?;
+        computed(self.points.len());
+        let given = if self.is_free() { None } else { Some(self.prescribed(x, &shape)?) };
+        let state = given.as_ref().unwrap_or(state);
+        let each = state.iter().zip(self.points).zip(self.weights);
+        let cost: f64 =
+            each.map(|((at, target), weight)| weight * (target - shape.coupler_point(*at)).norm_sqr()).sum();
+        cost.is_finite().then_some(cost)
+    }
+
+    fn linearise(
+        &self,
+        x: &Unknowns,
+        state: &Positions,
+        each: &mut dyn FnMut(&PointBlock<UNKNOWNS>),
+    ) -> bool {
+        let Some(shape) = SliderShape::of(self.kind, x) else { return false };
+        computed(self.points.len());
+        let given = match &self.angles {
+            Angles::Free => None,
+            Angles::Prescribed(..) => match self.prescribed(x, &shape) {
+                Some(given) => Some(given),
+                None => return false,
+            },
+        };
+        let state = given.as_ref().unwrap_or(state);
+        let zero = Complex::new(0.0, 0.0);
+        for ((position, target), weight) in state.iter().zip(self.points).zip(self.weights) {
+            let [e, u] = *position;
+            let miss = shape.miss(*position);
+            let (crank_turn, coupler_turn) = (turned(e) * shape.crank, turned(u) * shape.offset);
+            let direct = [Complex::new(1.0, 0.0), Complex::i(), e, zero, zero, zero, u, turned(u)];
+            // What a change of the miss does to P.
+            let (back, tangent) = match &self.angles {
+                Angles::Free => {
+                    let n2 = miss.by_crank * miss.by_crank + miss.by_coupler * miss.by_coupler;
+                    if n2 == 0.0 {
+                        return false;
+                    }
+                    let back = (crank_turn * miss.by_crank + coupler_turn * miss.by_coupler) / n2;
+                    let along = crank_turn * miss.by_coupler - coupler_turn * miss.by_crank;
+                    (back, along / n2.sqrt() * -self.forward())
+                }
+                Angles::Prescribed(..) => {
+                    if miss.by_coupler == 0.0 {
+                        return false;
+                    }
+                    (coupler_turn / miss.by_coupler, zero)
+                }
+            };
+            let mut jacobian = [[0.0; UNKNOWNS]; 2];
+            for (k, (direct, by)) in direct.into_iter().zip(miss.by_shape).enumerate() {
+                let column = back * by - direct;
+                (jacobian[0][k], jacobian[1][k]) = (column.re, column.im);
+            }
+            if let Angles::Prescribed(_, offset, _) = &self.angles {
+                let by_turn = back * miss.by_crank - crank_turn;
+                add_turn(&mut jacobian[0], by_turn.re, &shape, *offset);
+                add_turn(&mut jacobian[1], by_turn.im, &shape, *offset);
+            }
+            each(&PointBlock {
+                residual: xy(target - shape.coupler_point(*position)),
+                jacobian,
+                tangent: xy(tangent),
+                weight: *weight,
+            });
+        }
+        true
+    }
+
+    fn retract(
+        &self,
+        from: &Unknowns,
+        state: &Positions,
+        tau: &[f64],
+        to: &Unknowns,
+        out: &mut Positions,
+    ) -> bool {
+        if !self.is_free() {
+            return true;
+        }
+        let shapes = (SliderShape::of(self.kind, from), SliderShape::of(self.kind, to));
+        let (Some(from), Some(to)) = shapes else { return false };
+        out.clone_from(state);
+        let forward = self.forward();
+        for (position, tau) in out.iter_mut().zip(tau) {
+            if let Some([by_e, by_u]) = tangent_of(&from.miss(*position)) {
+                turn_by(&mut position[0], forward * tau * by_e);
+                turn_by(&mut position[1], forward * tau * by_u);
+            }
+        }
+        SliderFit::settle(&to, out)
+    }
+
+    fn gaps(&self, x: &Unknowns, state: &Positions, gaps: &mut Vec<f64>) -> bool {
+        if self.sense == 0.0 || !self.is_free() {
+            return false;
+        }
+        let Some(shape) = SliderShape::of(self.kind, x) else { return false };
+        let tangents: Option<Vec<[f64; 2]>> = state.iter().map(|p| tangent_of(&shape.miss(*p))).collect();
+        let Some(tangents) = tangents.filter(|tangents| !tangents.is_empty()) else { return false };
+        for j in 1..state.len() {
+            let way = way(state[j - 1], tangents[j - 1], state[j], tangents[j]);
+            gaps.push(way.map_or(FAR_APART, |way| self.sense * way));
+        }
+        let last = state.len() - 1;
+        let gone: f64 = gaps.iter().sum();
+        let closing = way(state[last], tangents[last], state[0], tangents[0]).map(|way| self.sense * way);
+        let far = self.ends_meet || closing.is_none_or(|way| way < -0.1 * gone);
+        gaps.push(closing.filter(|_| !far).unwrap_or(FAR_APART));
+        true
+    }
+
+    fn join(&self, state: &mut Positions, leaders: &[usize]) {
+        for (j, &leader) in leaders.iter().enumerate() {
+            state[j] = state[leader];
+        }
+    }
+
+    fn constraints(&self, x: &Unknowns, state: &Positions, each: &mut EachConstraint<'_, UNKNOWNS>) {
+        let Some(shape) = SliderShape::of(self.kind, x) else { return };
+        let given = if self.is_free() { None } else { self.prescribed(x, &shape) };
+        let at = given.as_ref().unwrap_or(state);
+        self.limits.each(&shape, at, self.points.len(), &mut |bar| {
+            each(bar.value, &|| self.row(&bar, &shape, at));
+        });
+    }
+}

@@ -1,0 +1,17 @@
+//! Linkages with a slider as least-squares problems: a path with prescribed or free timing.
+//!
+//! Every single loop that a crank drives is C = A + a e, P = C + Z u with one closure G(e, u) = 0 that gives u; the fit of a
+//! four-bar carries over with another closure ([`shape`]).
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`fit`] | the fit to the points of a path |
+//! | [`limits`] | bounds of the unknowns, and inequalities of the requirements |
+//! | [`shape`] | the closure with its derivatives by the position and by the unknowns |
+
+pub mod fit;
+pub mod limits;
+pub mod shape;
+
+#[cfg(test)]
+mod tests;

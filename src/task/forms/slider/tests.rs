@@ -1,0 +1,125 @@
+//! Derivatives against differences, and the closure against the position in closed form.
+
+use super::fit::{Angles, SliderFit};
+use super::limits::Limited;
+use super::shape::{SliderShape, Unknowns};
+use crate::mechanism::{AssemblyMode, Complex, LoopKind};
+use crate::numbers::arithmetic::streams::{stream, uniform};
+use crate::numbers::optimise::levenberg_marquardt::derivative_error;
+use crate::task::spec::{DesignSpec, Limits, RequireSpec};
+use crate::task::{AngleOffset, Problem};
+
+/// Draws a linkage that closes for cranks within half a radian of the x axis, as unknowns.
+fn drawn(kind: LoopKind, case: u64) -> (Unknowns, SliderShape) {
+    let mut draws = stream(9, case);
+    let mut in_range = |low: f64, high: f64| uniform(&mut draws, low, high);
+    let x = match kind {
+        LoopKind::SliderCrank => [
+            in_range(-1.0, 1.0),
+            in_range(-1.0, 1.0),
+            in_range(0.2, 0.6),
+            in_range(2.2, 3.0),
+            in_range(-0.3, 0.3),
+            in_range(-3.0, 3.0),
+            in_range(-1.0, 2.0),
+            in_range(-1.0, 1.0),
+            in_range(-1.0, 1.0),
+        ],
+        _ => [
+            in_range(-0.2, 0.2),
+            in_range(-0.2, 0.2),
+            in_range(0.3, 0.6),
+            in_range(1.5, 2.5),
+            in_range(-1.0, 1.0),
+            in_range(-0.5, 0.5),
+            in_range(-1.0, 2.0),
+            in_range(-1.0, 1.0),
+            in_range(-1.0, 1.0),
+        ],
+    };
+    (x, SliderShape::of(kind, &x).expect("lengths are positive"))
+}
+
+fn limits(kind: LoopKind, turns: bool) -> Limited {
+    let require = RequireSpec {
+        transmission_deg_min: Some(20.0),
+        link_ratio_max: 9.0,
+        longest_max: Some(11.0),
+        ..RequireSpec::default()
+    };
+    let points: Vec<[f64; 2]> = (0..8).map(|j| [f64::from(j) * 0.3, 0.2 * f64::from(j * j)]).collect();
+    let design =
+        DesignSpec { line_point: Some([Limits(-0.3, 0.5), Limits(0.1, 0.4)]), ..DesignSpec::default() };
+    let spec = Problem::builder(points).design(design).require(require).spec().expect("a problem");
+    let problem = Problem::new(spec).expect("a problem");
+    Limited::of(&problem, kind, Complex::new(0.0, 0.0), 1.0).turning(turns)
+}
+
+#[test]
+fn derivatives_agree_with_differences() {
+    for kind in [LoopKind::SliderCrank, LoopKind::InvertedSliderCrank] {
+        for case in 0..60 {
+            let (x, shape) = drawn(kind, case);
+            let sign = if case % 2 == 0 { 1.0 } else { -1.0 };
+            let cranks = (0..6).map(|j| Complex::from_polar(1.0, 0.7 * f64::from(j) - 1.4));
+            let position = |e: Complex| Some([e, shape.coupler_direction(e, sign)?]);
+            let positions: Vec<[Complex; 2]> =
+                cranks.map(position).collect::<Option<_>>().expect("it closes");
+            let points: Vec<Complex> =
+                positions.iter().map(|p| shape.coupler_point(*p) + Complex::new(0.1, -0.05)).collect();
+            let weights = [1.0, 2.0, 0.5, 1.0, 1.0, 3.0];
+            let limits = limits(kind, case % 3 == 0);
+            let phases: Vec<Complex> = positions.iter().map(|p| p[0]).collect();
+            let offset = [AngleOffset::Free, AngleOffset::Fixed, AngleOffset::Ground][case as usize % 3];
+            let mut turned = x;
+            if offset != AngleOffset::Fixed {
+                turned[8] = 0.1;
+            }
+            let assembly = AssemblyMode::of(sign);
+            for angles in [Angles::Free, Angles::Prescribed(phases, offset, assembly)] {
+                let is_free = matches!(angles, Angles::Free);
+                let fit = SliderFit {
+                    kind,
+                    points: &points,
+                    weights: &weights,
+                    angles,
+                    limits: &limits,
+                    sense: 1.0,
+                    ends_meet: false,
+                };
+                let steps = [1e-6; 9];
+                let state = if is_free { positions.clone() } else { Vec::new() };
+                let Some(error) =
+                    derivative_error(&fit, &turned, &state, &steps, if is_free { 1e-6 } else { 0.0 })
+                else {
+                    // A crank from the ground may stand where the loop is open.
+                    assert!(offset == AngleOffset::Ground && !is_free);
+                    continue;
+                };
+                assert!(error < 2e-8, "{kind} {case} free {is_free} {offset:?}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_shape_is_the_linkage_that_it_becomes() {
+    for kind in [LoopKind::SliderCrank, LoopKind::InvertedSliderCrank] {
+        for case in 0..60 {
+            let (_, shape) = drawn(kind, case);
+            let carried = shape.carried(Complex::new(1.5, -2.0), Complex::new(3.0, 0.7));
+            for assembly in [AssemblyMode::Plus, AssemblyMode::Minus] {
+                let linkage = carried.linkage(assembly).expect("a linkage");
+                for j in 0..12 {
+                    let e = Complex::from_polar(1.0, 0.5 * f64::from(j));
+                    let Some(u) = carried.coupler_direction(e, assembly.sign()) else { continue };
+                    assert!(carried.miss([e, u]).value.abs() < 1e-13);
+                    assert_eq!(carried.assembly_of([e, u]), assembly);
+                    let joints = linkage.joints_with(e.arg(), AssemblyMode::Plus).expect("it closes").joints;
+                    let apart = (joints.coupler_point - carried.coupler_point([e, u])).norm();
+                    assert!(apart < 1e-12, "{kind} {case} {j}: {apart}");
+                }
+            }
+        }
+    }
+}

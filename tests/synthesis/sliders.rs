@@ -1,0 +1,196 @@
+//! Linkages with a slider: their curves are found again, their records verify, joints recomputed by other code, and what is
+//! not searched for is said.
+
+use crate::common::parse;
+use crate::motion::solved;
+use linkwright::internals::app::job::run::{Context, Job, run};
+use linkwright::internals::files::generator::FileKind;
+use linkwright::internals::files::linkage_file::{any_to_toml, parse_any};
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::mechanism::{
+    AssemblyMode, Complex, InvertedSliderCrank, LoopKind, OneLoop, SliderCrank, dot, xy,
+};
+use linkwright::internals::record::{Candidate, Record};
+use linkwright::internals::report::html::report_html;
+use linkwright::load_problem;
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+fn slider_crank() -> OneLoop {
+    let direction = 0.3;
+    let line = (Complex::new(1.1, 1.6), direction);
+    let offset = Complex::new(2.0, 1.0);
+    let made = SliderCrank::from_parts(Complex::new(1.0, 2.0), [1.0, 3.0], line, offset, AssemblyMode::Plus);
+    OneLoop::SliderCrank(made.expect("a linkage"))
+}
+
+fn inverted() -> OneLoop {
+    let pivots = [Complex::new(0.0, 0.0), Complex::new(2.5, 0.5)];
+    let made = InvertedSliderCrank::from_parts(pivots, 1.0, 0.4, Complex::new(3.0, 1.0), AssemblyMode::Plus);
+    OneLoop::InvertedSliderCrank(made.expect("a linkage"))
+}
+
+/// Points of a linkage's curve at crank angles, radians.
+fn points(linkage: &OneLoop, angles: &[f64]) -> String {
+    let point = |angle: &f64| {
+        let at = linkage.joints_with(*angle, linkage.assembly()).expect("it closes");
+        let [x, y] = xy(at.joints.coupler_point);
+        format!("[{x:?}, {y:?}]")
+    };
+    angles.iter().map(point).collect::<Vec<_>>().join(", ")
+}
+
+/// A problem file of points of a linkage's curve.
+fn problem(linkage: &OneLoop, angles: &[f64], closed: bool, more: &str) -> String {
+    format!("format = 1\n[task.path]\nclosed = {closed}\npoints = [{}]\n{more}", points(linkage, angles))
+}
+
+/// Recomputes what holds at every target from the record's numbers alone: the lengths of crank and coupler, the slider on
+/// its line or the rod past its block, and the place of P.
+fn assert_closed(candidate: &Candidate, targets: &[[f64; 2]], size: f64) {
+    let mut sum = 0.0;
+    for (([x, y], deg), t1) in targets.iter().zip(&candidate.crank_deg).zip(&candidate.t1_at) {
+        let at = candidate.linkage.joints_with(deg.to_radians(), *t1).expect("it closes").joints;
+        let (c, d, p) = (at.crank_pin, at.follower_pin, at.coupler_point);
+        let near = |one: f64, other: f64| assert!((one - other).abs() < 1e-10 * size, "{one} {other}");
+        let a = candidate.linkage.crank_pivot();
+        near((c - a).norm(), candidate.linkage.crank());
+        near(((c - a).arg() - deg.to_radians()).sin(), 0.0);
+        let along = match &candidate.linkage {
+            OneLoop::SliderCrank(l) => {
+                near((d - c).norm(), l.coupler());
+                let s = Complex::from_polar(1.0, l.parameters().line_deg.to_radians());
+                near(((d - l.line_point()) * s.conj()).im, 0.0);
+                (d - c) / l.coupler()
+            }
+            OneLoop::InvertedSliderCrank(l) => {
+                let arm = l.block_pivot() - d;
+                near(arm.norm(), l.offset().abs());
+                near(dot(arm, d - c), 0.0);
+                // B lies to the left of the coupler where the offset is positive.
+                let u = (d - c) * t1.sign() / (d - c).norm();
+                near((arm * u.conj()).im, l.offset());
+                u
+            }
+            OneLoop::FourBar(_) => panic!("not a four-bar"),
+        };
+        let offset = candidate.linkage.coupler_offset();
+        near((p - c - along * offset).norm(), 0.0);
+        sum += (Complex::new(*x, *y) - p).norm_sqr();
+    }
+    assert!((sum - candidate.error.sum_sq).abs() <= 1e-10 * sum.max(size * size * 1e-12));
+}
+
+fn turn(n: usize) -> Vec<f64> {
+    (0..n).map(|j| TAU * j as f64 / n as f64).collect()
+}
+
+#[test]
+fn curves_of_both_kinds_are_found_again_closed_open_and_timed() {
+    let open: Vec<f64> = (0..24).map(|j| 0.3 + 0.1 * f64::from(j)).collect();
+    let timed: Vec<f64> = (0..18).map(|j| 0.5 + 0.3 * f64::from(j)).collect();
+    for (linkage, kind) in [(slider_crank(), "slider-crank"), (inverted(), "inverted-slider-crank")] {
+        let design = format!("[design]\nmechanism = \"{kind}\"\n[solve]\ncandidates = 1\nadvice = false\n");
+        let degrees: Vec<String> = timed.iter().map(|a| format!("{:?}", (a - 0.5).to_degrees())).collect();
+        let timing = format!("[task.path.timing]\ncrank_deg = [{}]\n{design}", degrees.join(", "));
+        let texts = [
+            problem(&linkage, &turn(40), true, &design),
+            problem(&linkage, &open, false, &design),
+            problem(&linkage, &timed, false, &timing),
+        ];
+        for text in texts {
+            let record = solved(parse(&text).spec);
+            let best = &record.candidates[0];
+            assert!(best.accepted && best.error.rms_over_size < 1e-12, "{kind}: {}", best.error.rms);
+            assert_eq!(best.linkage.kind().name(), kind);
+            assert_closed(best, &record.problem.resolved.task.points, 5.0);
+            assert!(verify(&record).is_ok_and(|found| found.is_empty()));
+            assert!(report_html(&record, 0).contains(kind));
+        }
+    }
+}
+
+#[test]
+fn kinds_are_ranked_together_and_the_stride_is_drawn_by_a_slider_crank() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/examples/walking-stride-slider.toml");
+    let mut spec = load_problem(&path, &[]).expect("a problem").spec;
+    spec.solve.advice = false;
+    let record = solved(spec);
+    assert!(verify(&record).is_ok_and(|found| found.is_empty()));
+    let best = &record.candidates[0];
+    assert!(best.accepted && best.linkage.kind() == LoopKind::SliderCrank);
+    assert!(best.error.rms < 0.345 && best.transmission_deg.worst > 39.0, "{}", best.error.rms);
+    let four_bar = record.candidates.iter().find(|c| c.linkage.kind() == LoopKind::FourBar);
+    assert!(four_bar.is_some_and(|c| c.error.rms > 1.6), "the four-bar is listed behind it");
+    for candidate in record.candidates.iter().filter(|c| c.linkage.kind() != LoopKind::FourBar) {
+        assert_closed(candidate, &record.problem.resolved.task.points, 500.0);
+    }
+}
+
+#[test]
+fn a_rail_is_horizontal_and_passes_where_it_is_wanted() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/examples/walking-stride-slider.toml");
+    let set = [
+        ("design.mechanism", "slider-crank"),
+        ("design.line_deg", "180"),
+        ("design.line_point", "[0, [200, 300]]"),
+        ("solve.candidates", "1"),
+        ("solve.advice", "false"),
+    ]
+    .map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let spec = load_problem(&path, &set).expect("a problem").spec;
+    let record = solved(spec);
+    assert!(verify(&record).is_ok_and(|found| found.is_empty()));
+    let best = &record.candidates[0];
+    assert!(best.accepted, "{:?}", best.requirements);
+    let rail = best.linkage.slider_crank().expect("a slider-crank");
+    let s = rail.line_direction();
+    assert!(s.im.abs() < 1e-9);
+    let height = rail.line_point().im - rail.line_point().re * s.im / s.re;
+    assert!((200.0 - 1e-6..=300.0 + 1e-6).contains(&height), "{height}");
+    let rows: Vec<&str> = best.requirements.iter().map(|row| row.name.as_str()).collect();
+    assert!(rows.contains(&"design.line_deg") && rows.contains(&"design.line_y"), "{rows:?}");
+}
+
+fn on_threads(spec: &linkwright::spec::ProblemSpec, threads: usize) -> Record {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+    pool.install(|| run(&Job::new("it", spec.clone()), &context).expect("a search").record)
+}
+
+#[test]
+fn records_are_the_same_on_one_thread_and_on_three_and_read_back_to_the_same_bytes() {
+    let noisy = "format = 1\n[task.path]\nclosed = true\npoints = [[0, 0], [1, 0.1], [2, 0], [2.6, 0.8], [2, 1.5], \
+                 [1, 1.3], [0.1, 1.6], [-0.5, 0.7]]\n\
+                 [design]\nmechanism = [\"inverted-slider-crank\", \"slider-crank\"]\n[require]\ntransmission_deg_min = 25\n";
+    let spec = parse(noisy).spec;
+    let (one, three) = (on_threads(&spec, 1), on_threads(&spec, 3));
+    let [one, three] = [one, three].map(|r| serde_json::to_string(&r).expect("JSON"));
+    assert_eq!(one, three);
+    let read: Record = serde_json::from_str(&one).expect("a record");
+    assert_eq!(serde_json::to_string(&read).expect("JSON"), one);
+    assert!(read.candidates.iter().any(|c| c.accepted && c.transmission_deg.worst > 25.0 - 1e-6));
+    assert!(verify(&read).is_ok_and(|found| found.is_empty()));
+}
+
+#[test]
+fn a_linkage_file_of_each_kind_is_known_as_written_by_the_program_and_reads_back() {
+    for linkage in [slider_crank(), inverted()] {
+        let text = any_to_toml("it", None, &linkage);
+        assert!(FileKind::Linkage.is_written_by_us(text.as_bytes(), b""));
+        let read = parse_any("it.toml", &text).expect("a linkage");
+        assert_eq!(read.linkage, linkage.into());
+    }
+}
+
+#[test]
+fn a_record_with_a_stray_key_of_another_kind_is_refused() {
+    let text = r#"{"kind": "slider-crank", "A": [0, 0], "B": [1, 0], "a": 1, "b": 3, "line_point": [0, 0], "line_deg": 0,
+        "coupler_x": 1, "coupler_y": 0, "t1": 1}"#;
+    let refused = serde_json::from_str::<OneLoop>(text).expect_err("B is no key").to_string();
+    assert!(refused.contains("a slider-crank has no key `B`"), "{refused}");
+    let missing =
+        serde_json::from_str::<OneLoop>(&text.replace(r#""B": [1, 0], "#, "").replace(r#""b": 3, "#, ""));
+    assert!(missing.expect_err("b is missing").to_string().contains("missing field `b`"));
+}
