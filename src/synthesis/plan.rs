@@ -53,8 +53,17 @@ pub fn approximate(context: Context<'_>) -> Result<SearchOutcome, PopulationErro
     if design.is_of_four_bars() {
         return four_bars(context);
     }
-    let four_bars = if design.searches(LoopKind::FourBar) { Some(four_bars(context)?) } else { None };
-    Ok(with_sliders(context, four_bars))
+    if !design.searches(LoopKind::FourBar) {
+        return Ok(with_sliders(context, None));
+    }
+    // Half of the budget at most, so that the others have their turn where no four-bar is acceptable.
+    let mut spec = context.problem.spec().clone();
+    spec.solve.evaluations = (spec.solve.evaluations / 2).max(1);
+    let found = match context.problem.with(spec) {
+        Ok(halved) => four_bars(context.of(&halved))?,
+        Err(_) => four_bars(context)?,
+    };
+    Ok(with_sliders(context, Some(found)))
 }
 
 /// Searches for linkages with a slider with the evaluations that a search for four-bars has left, and ranks all together.

@@ -102,6 +102,10 @@ export type Defect =
       kind: "circuit";
     };
 /**
+ * The kinds of linkages of one loop.
+ */
+export type LoopKind = "four-bar" | "slider-crank" | "inverted-slider-crank";
+/**
  * The state of a job.
  */
 export type JobState = "running" | "done" | "stopped" | "broken-off" | "elsewhere" | "failed" | "unreadable";
@@ -136,7 +140,6 @@ export interface Wire {
   ExportAsk: ExportAsk;
   Form: Form;
   FormulaSpec: FormulaSpec;
-  FourBar: FourBar;
   FunctionAsk: FunctionAsk;
   JobAsk: JobAsk;
   JobList: JobList;
@@ -150,10 +153,12 @@ export interface Wire {
   LeftOut: LeftOut;
   LinkageAsk: LinkageAsk;
   LinkageType: LinkageType;
+  LoopKind: LoopKind;
   Method: Method;
   NaturalCoordinates: NaturalCoordinates;
   Objective: Objective;
   OfJob: OfJob;
+  OneLoop: OneLoop;
   OnePolicy: OnePolicy;
   Opened: Opened;
   OrderPolicy: OrderPolicy;
@@ -887,7 +892,7 @@ export interface ComparedRow {
    */
   frame_deg?: number;
   label: string;
-  linkage: FourBar;
+  linkage: OneLoop;
   /**
    * The point with the largest error.
    */
@@ -936,21 +941,9 @@ export interface ComparedRow {
   unmet: string[];
 }
 /**
- * A four-bar linkage: fixed pivots, five lengths and two signs.
- *
- * ```
- * use linkwright::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
- * let linkage = FourBar::new(NaturalCoordinates {
- *     crank_pivot: [0.0, 0.0], follower_pivot: [4.0, 1.0],
- *     crank: 2.0, coupler: 5.0, follower: 5.0, crank_side: 5.0, follower_side: 5.0,
- *     assembly: AssemblyMode::Plus, side: CouplerSide::Plus,
- * })?;
- * let joints = linkage.position(0.3).joints().unwrap();
- * assert!(((joints.follower_pin - joints.crank_pin).norm() - 5.0).abs() < 1e-14);
- * # Ok::<(), linkwright::LinkageError>(())
- * ```
+ * A linkage as it stands in records: every key of every kind.
  */
-export interface FourBar {
+export interface OneLoop {
   /**
    * The fixed pivot of the crank.
    *
@@ -959,40 +952,65 @@ export interface FourBar {
    */
   A: [number, number];
   /**
-   * The fixed pivot of the follower.
+   * The fixed pivot of a four-bar's follower, or of the block of an inverted slider-crank.
    *
    * @minItems 2
    * @maxItems 2
    */
-  B: [number, number];
+  B?: [number, number];
   /**
    * |AC|.
    */
   a: number;
   /**
-   * |CD|.
+   * |CD| of a four-bar and of a slider-crank.
    */
-  b: number;
+  b?: number;
   /**
-   * |BD|.
+   * |BD| of a four-bar.
    */
-  c: number;
+  c?: number;
   /**
-   * |CP|.
+   * P along the coupler from C, of kinds with a slider.
    */
-  d: number;
+  coupler_x?: number;
   /**
-   * |DP|.
+   * P to the left of the coupler, of kinds with a slider.
    */
-  e: number;
+  coupler_y?: number;
   /**
-   * Which intersection D takes: 1 = left of C -> B.
+   * |CP| of a four-bar.
+   */
+  d?: number;
+  /**
+   * |DP| of a four-bar.
+   */
+  e?: number;
+  kind?: LoopKind;
+  /**
+   * The direction of a slider-crank's line from the x axis, degrees.
+   */
+  line_deg?: number;
+  /**
+   * Q, a point of a slider-crank's line, from which the slider's place counts.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  line_point?: [number, number];
+  /**
+   * The distance of B to the left of the rod's line through C, of an inverted slider-crank.
+   */
+  offset?: number;
+  /**
+   * The assembly: of a four-bar 1 where D lies left of the line from C to B; of a slider-crank where D is the one of two
+   * places that lies further along the line; of an inverted one where the block is ahead of C along the rod.
    */
   t1: number;
   /**
-   * Which side of C -> D carries P: 1 = left.
+   * The side of a four-bar's coupler point: 1 where P lies left of the line from C to D.
    */
-  t2: number;
+  t2?: number;
 }
 /**
  * Name and version of the program.
@@ -1231,7 +1249,7 @@ export interface LinkageAsk {
 export interface Opened {
   ask?: Ask;
   /**
-   * The candidates, better first.
+   * The four-bars among the candidates, better first.
    */
   candidates: Shown[];
   /**

@@ -169,10 +169,11 @@ fn the_golden_file_of_the_player_is_what_the_kernel_says() {
             format!("  \"{key}\": [\n{}\n  ]", rows.join(",\n"))
         };
         let text = format!(
-            "{{\n  \"omega\": {},\n  \"alpha\": {},\n{},\n{}\n}}\n",
+            "{{\n  \"omega\": {},\n  \"alpha\": {},\n{},\n{},\n{}\n}}\n",
             found["omega"],
             found["alpha"],
             list("positions"),
+            list("sliders"),
             list("motions")
         );
         std::fs::write(&place, text).expect("it can be written");

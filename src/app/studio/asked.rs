@@ -426,6 +426,10 @@ mod tests {
                     assert!(matches!(Ask::of(&problem), Err(NotHere::FreeRanges)), "{}", path.display());
                     continue;
                 }
+                if !problem.spec.design.is_of_four_bars() {
+                    assert!(matches!(Ask::of(&problem), Err(NotHere::Sliders)), "{}", path.display());
+                    continue;
+                }
                 let ask = Ask::of(&problem).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
                 // Over the wire and back.
                 let wire: Ask =
