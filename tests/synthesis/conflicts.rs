@@ -97,7 +97,7 @@ fn proposals_that_hold(problems: Vec<(PathBuf, Set<'static>, &'static str)>) -> 
 }
 
 #[test]
-#[ignore = "slow: .ci/run runs it"]
+#[ignore = "many minutes: by hand, after a change of conflicts"]
 fn every_proposal_that_is_typed_in_ends_with_an_accepted_candidate() {
     let proposed = proposals_that_hold(impossible());
     assert!(proposed >= 12, "{proposed} proposals");
