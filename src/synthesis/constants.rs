@@ -34,9 +34,26 @@ impl Effort {
     }
 }
 
+/// When a multistart search believes its best answer ([`super::repeated`]).
+pub struct Stopping {
+    /// Rounds that have to reach the best answer.
+    pub hits: usize,
+    /// Rounds that suffice if they only come near it.
+    pub near_hits: usize,
+    /// It also ends after so many independent rounds, if it has gone on for `quiet_times` as long as it took to come within
+    /// a thousandth of its best answer.
+    pub quiet_rounds: u64,
+    /// See `quiet_rounds`.
+    pub quiet_times: u64,
+    /// Least number of batches.
+    pub least_batches: u64,
+    /// Batches without a new answer that end a search for further distinct answers.
+    pub quiet_batches: u64,
+}
+
 /// Linkages with a slider; chosen by `cargo bench --bench sliders`.
 pub mod sliders {
-    use super::Effort;
+    use super::{Effort, Stopping};
     /// Rounds that run in parallel before any is read.
     pub const BATCH: u64 = 4;
     /// Shapes drawn in a round, the part of them whose crank turns fully, those fitted for a few steps, and to convergence.
@@ -49,16 +66,15 @@ pub mod sliders {
     /// Candidates fitted on to the last digit at the end, at least, and the effort of each.
     pub const LEAST_POLISHED: usize = 8;
     pub const POLISH: Effort = Effort::of(1500, 40);
-    /// Rounds that have to reach the best answer, or to come near it.
-    pub const HITS: usize = 5;
-    pub const NEAR_HITS: usize = 12;
-    /// A search ends that has gone on for so many rounds, and so many times as long as it took to come within a thousandth
-    /// of its best answer.
-    pub const QUIET_ROUNDS: u64 = 60;
-    pub const QUIET_TIMES: u64 = 4;
-    /// Least number of batches, and batches without a new answer that end a search for further distinct answers.
-    pub const LEAST_BATCHES: u64 = 2;
-    pub const QUIET_BATCHES: u64 = 6;
+    /// When the best answer is believed.
+    pub const STOPPING: Stopping = Stopping {
+        hits: 5,
+        near_hits: 12,
+        quiet_rounds: 60,
+        quiet_times: 4,
+        least_batches: 2,
+        quiet_batches: 6,
+    };
     /// Candidates kept.
     pub const KEPT: usize = 64;
 }
@@ -132,6 +148,8 @@ pub mod rounds {
 
 /// Poses of a body with free timing: `benches/motion` chooses them.
 pub mod motion {
+    use super::Stopping;
+
     /// Rounds that run in parallel before any is read.
     pub const BATCH: u64 = 2;
     /// Places a side of the map of circle errors, and its reach in sizes of the target; the most minima taken.
@@ -150,13 +168,15 @@ pub mod motion {
     pub const LONG: usize = 3;
     /// Ends beyond these fitted to convergence whose points have strayed, if they are better.
     pub const ASTRAY: usize = 1;
-    /// Rounds that have to reach the best answer, or to come near it.
-    pub const HITS: usize = 6;
-    pub const NEAR_HITS: usize = 12;
-    /// A search ends that has gone on for so many independent rounds, and so many times as long as it took to come within
-    /// a thousandth of its best answer.
-    pub const QUIET_ROUNDS: u64 = 40;
-    pub const QUIET_TIMES: u64 = 5;
+    /// When the best answer is believed.
+    pub const STOPPING: Stopping = Stopping {
+        hits: 6,
+        near_hits: 12,
+        quiet_rounds: 40,
+        quiet_times: 5,
+        least_batches: 3,
+        quiet_batches: 8,
+    };
     /// One round in so many starts near the best known answers: so many of them, and so many starts.
     pub const NEAR_EVERY: u64 = 4;
     pub const LEADERS: usize = 4;
@@ -172,9 +192,6 @@ pub mod motion {
     pub const BESIDE_BETWEEN: (f64, f64) = (0.02, 2.0);
     pub const CROSSED_MINIMA: usize = 6;
     pub const CROSSED_GRID: usize = 41;
-    /// Least number of batches, and batches without a new answer that end a search for further distinct answers.
-    pub const LEAST_BATCHES: u64 = 3;
-    pub const QUIET_BATCHES: u64 = 8;
     /// The weight of a pose that has to be met exactly, in parts of its own.
     pub const EXACT_WEIGHT: f64 = 3e4;
     /// Number of candidates kept while searching.

@@ -37,6 +37,7 @@
 //! | [`reassign`] | correspondence between target points and coupler curve: assigns the points to curve samples in their order, by dynamic programming |
 //! | [`reduced_fitness`] | fitness of a population search in reduced variables: ratios and at most two angles in, violation and cost out |
 //! | [`relaxed`] | search with one requirement left out, whose results are then fitted under all requirements |
+//! | `repeated` | what the multistart searches by repeated hits share: the best answer so far, and when it is believed |
 //! | [`repeats`] | repeated hits of the best answer, counted over independent rounds |
 //! | [`required`] | ends whose points have strayed to circuits or branches that the referee will refuse, and starts that lead back |
 //! | [`rounds`] | multistart search for prescribed timing in the physical parameters |
@@ -81,6 +82,7 @@ pub mod population;
 mod reassign;
 pub mod reduced_fitness;
 mod relaxed;
+mod repeated;
 mod repeats;
 mod required;
 mod rounds;

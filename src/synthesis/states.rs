@@ -29,10 +29,10 @@ pub struct SearchState {
     pub(super) rounds: Option<RoundsState>,
     /// State of a motion search.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) motion: Option<MotionState>,
+    pub(super) motion: Option<RepeatedState>,
     /// State of a search for linkages with a slider.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) sliders: Option<MotionState>,
+    pub(super) sliders: Option<RepeatedState>,
     /// State of a population search.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) population: Option<RestartsState>,
@@ -144,9 +144,9 @@ pub struct TimedState {
     pub(super) binding_waves: u64,
 }
 
-/// The state of a motion search, or of one for linkages with a slider, between two batches.
+/// The state of a search by repeated hits ([`super::repeated`]) between two batches.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct MotionState {
+pub struct RepeatedState {
     pub(super) found: Vec<Candidate>,
     pub(super) evaluations: Evaluations,
     pub(super) best: Option<Candidate>,

@@ -5,7 +5,7 @@
 //! best `LONG` of them to convergence, and has the ends judged, driven from either side. Rounds run in parallel in batches
 //! and are read in their order: the number of threads changes nothing but the time. The search ends when enough rounds
 //! have reached the best answer (or the search has gone on for several times as long as it took to reach it) and as many
-//! distinct answers as were asked for are known, or no new one has come for `QUIET_BATCHES` batches; an exact answer needs
+//! distinct answers as were asked for are known, or no new one has come for `quiet_batches` of them; an exact answer needs
 //! no second hit. Some rounds start from known answers instead, near them or with one of their dyads ([`crossing`]); these
 //! do not count as hits. Pivots that are to lie on lines have dyads of their own ([`on_lines`]). Where exact answers form a
 //! family ([`super::family`]), several batches are searched and the best answers led to better transmission angles.
@@ -14,24 +14,24 @@ mod crossing;
 mod on_lines;
 mod starts;
 
-use super::belief::{Belief, NEARLY, SAME_OPTIMUM};
+use super::Context;
+use super::belief::SAME_OPTIMUM;
 use super::constants::motion::{
-    ASTRAY, BATCH, CROSSED_EVERY, EXACT_WEIGHT, FAMILY_BATCHES, HITS, KEPT, LEADERS, LEAST_BATCHES, LONG,
-    NEAR, NEAR_EVERY, NEAR_HITS, QUIET_BATCHES, QUIET_ROUNDS, QUIET_TIMES, SHORT,
+    ASTRAY, BATCH, CROSSED_EVERY, EXACT_WEIGHT, FAMILY_BATCHES, KEPT, LEADERS, LONG, NEAR, NEAR_EVERY, SHORT,
+    STOPPING,
 };
-use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
+use super::driver::{Allowance, Found, Standing, Strategy, drive, in_parallel};
 use super::family::{climb, freedom};
 use super::moves::near;
 use super::multistart::{LONG_FIT, RoundOutcome, SHORT_FIT, Spender, by_merit, glanced, promise};
 use super::polish::promising;
 use super::required::strayed;
-use super::states::{MotionState, SearchState, of_as_many_points};
-use super::{Context, HitsSoFar};
+use super::states::{RepeatedState, SearchState};
 use crate::judge::assess::assess_again;
-use crate::judge::rank::{exact_cost, searched, sort};
+use crate::judge::rank::{exact_cost, sort};
 use crate::judge::warm::start_at;
 use crate::numbers::arithmetic::streams::{Stream, stream};
-use crate::record::{Candidate, Repeats};
+use crate::record::Candidate;
 use crate::task::Problem;
 use crate::task::forms::start::Start;
 pub(super) use starts::DyadStarts;
@@ -43,7 +43,7 @@ struct Motion<'a> {
     exact: f64,
     /// The number of free parameters that are left when all targets are met.
     freedom: usize,
-    at: MotionState,
+    at: RepeatedState,
 }
 
 /// The kind of a start of a round.
@@ -89,15 +89,11 @@ fn with_exact_ones_weighted(problem: &Problem) -> Option<Problem> {
 fn search_as_it_is(context: Context<'_>, allowance: Allowance) -> Option<Found> {
     let problem = context.problem;
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().motion.clone());
-    let earlier = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best));
     let mut search = Motion {
         starts: DyadStarts::new(problem),
         exact: exact_cost(problem),
         freedom: freedom(problem),
-        at: earlier.unwrap_or_else(|| MotionState {
-            belief: Belief::new(exact_cost(problem)),
-            ..MotionState::default()
-        }),
+        at: RepeatedState::of(problem, earlier),
     };
     let reason = drive(context, allowance, &mut search);
     let mut at = search.at;
@@ -105,9 +101,8 @@ fn search_as_it_is(context: Context<'_>, allowance: Allowance) -> Option<Found> 
         let left = allowance.limit.saturating_sub(at.evaluations.objective);
         at.evaluations += context.cost(climb(context, &mut at.found, left));
     }
-    let (hits, near) = at.belief.hits();
     Some(Found {
-        repeats: at.best.is_some().then(|| Repeats::new(at.independent, hits as u64, near as u64)),
+        repeats: at.repeats(),
         candidates: at.found,
         evaluations: at.evaluations,
         reason,
@@ -210,24 +205,6 @@ impl Motion<'_> {
         outcome.evaluations = spender.cost;
         outcome
     }
-
-    /// Takes a candidate as the best if it is better; `independent`: whether its round counts for the stopping rule.
-    fn take(&mut self, context: Context<'_>, candidate: &Candidate, independent: bool) {
-        if !promising(context.problem, candidate) {
-            return;
-        }
-        let error = searched(context.problem, candidate);
-        if independent || self.at.belief.would_improve(error) {
-            self.at.belief.came_to(error);
-        }
-        let bar = self.at.best.as_ref().map_or(f64::INFINITY, |best| searched(context.problem, best));
-        if error < bar {
-            if error < bar * (1.0 - NEARLY) {
-                self.at.reached = self.at.evaluations.objective;
-            }
-            self.at.best = Some(candidate.clone());
-        }
-    }
 }
 
 /// Returns the `LONG` best short ends whose points lie on circuits and branches that may go together, driven from whichever
@@ -262,15 +239,7 @@ impl Strategy for Motion<'_> {
     }
 
     fn standing(&self) -> Standing<'_> {
-        let MotionState { ref found, ref best, ref belief, evaluations, draws, .. } = self.at;
-        Standing {
-            evaluations: evaluations.objective,
-            draws,
-            best: best.as_ref(),
-            nearest: found.first(),
-            hits: best.as_ref().map(|_| HitsSoFar { came: belief.hits().0, wanted: HITS }),
-            is_cut: false,
-        }
+        self.at.standing(STOPPING.hits)
     }
 
     fn run(&mut self, context: Context<'_>, left: u64) -> (Self::Batch, bool) {
@@ -286,7 +255,7 @@ impl Strategy for Motion<'_> {
             self.at.draws += outcome.draws;
             self.at.evaluations += outcome.evaluations;
             for candidate in outcome.found {
-                self.take(context, &candidate, independent);
+                self.at.take(context.problem, &candidate, independent);
                 self.at.found.push(candidate);
             }
             if independent {
@@ -299,17 +268,9 @@ impl Strategy for Motion<'_> {
     }
 
     fn is_done(&mut self, context: Context<'_>) -> bool {
-        let at = &mut self.at;
-        let wanted = context.problem.spec().solve.candidates;
-        let is_exact = at.best.as_ref().is_some_and(|best| searched(context.problem, best) <= self.exact);
-        if self.freedom > 0 && is_exact && at.batch < FAMILY_BATCHES {
+        if self.freedom > 0 && self.at.is_exact(context.problem) && self.at.batch < FAMILY_BATCHES {
             return false;
         }
-        let (hits, near) = at.belief.hits();
-        let is_quiet = at.independent >= QUIET_ROUNDS && at.evaluations.objective >= QUIET_TIMES * at.reached;
-        let is_believed =
-            at.batch >= LEAST_BATCHES && (hits >= HITS || near >= NEAR_HITS || is_quiet && at.best.is_some());
-        (is_believed || is_exact)
-            && are_enough(context, &at.found, wanted, (&mut at.known, &mut at.quiet), QUIET_BATCHES)
+        self.at.is_done(context, &STOPPING)
     }
 }

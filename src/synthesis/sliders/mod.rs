@@ -5,24 +5,20 @@
 //! the best `LONG` of those to convergence, and has the ends judged. Kinds take turns. Rounds run in parallel in batches
 //! and are read in their order: the number of threads changes nothing but the time. The search ends when enough rounds have
 //! reached the best answer (or the search has gone on for several times as long as it took to reach it) and as many distinct
-//! answers as were asked for are known, or no new one has come for `QUIET_BATCHES` batches; an exact answer needs no second
+//! answers as were asked for are known, or no new one has come for `quiet_batches` of them; an exact answer needs no second
 //! hit, and where one answer is asked for the rounds after it in its batch are not read. The best answers are fitted on to
 //! the last digit at the end.
 
 mod starts;
 
-use super::belief::Belief;
-use super::belief::NEARLY;
+use super::Context;
 use super::constants::Effort;
 use super::constants::sliders::{
-    BATCH, DRAWS, HITS, KEPT, LEAST_BATCHES, LEAST_POLISHED, LONG, LONG_FIT, NEAR_HITS, POLISH,
-    QUIET_BATCHES, QUIET_ROUNDS, QUIET_TIMES, SHORT, SHORT_FIT, TURNING,
+    BATCH, DRAWS, KEPT, LEAST_POLISHED, LONG, LONG_FIT, POLISH, SHORT, SHORT_FIT, STOPPING, TURNING,
 };
-use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
+use super::driver::{Allowance, Found, Standing, Strategy, drive, in_parallel};
 use super::multistart::{RoundOutcome, by_merit};
-use super::polish::promising;
-use super::states::{MotionState, SearchState, of_as_many_points};
-use super::{Context, HitsSoFar};
+use super::states::{RepeatedState, SearchState};
 use crate::judge::assess::assess_on_curve;
 use crate::judge::rank::{exact_cost, searched, sort};
 use crate::judge::unwrapped::unwrapped;
@@ -31,7 +27,7 @@ use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{AssemblyMode, Complex, LoopKind};
 use crate::numbers::arithmetic::streams::{stream, uniform};
 use crate::numbers::optimise::levenberg_marquardt::{LmOptions, LmOutcome, solve};
-use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Reason, Repeats};
+use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Reason};
 use crate::task::forms::slider::fit::{Angles, SliderFit};
 use crate::task::forms::slider::limits::Limited;
 use crate::task::forms::slider::shape::{OFFSET, SliderShape};
@@ -47,7 +43,7 @@ struct Sliders {
     target: Target,
     kinds: Vec<(LoopKind, Limited)>,
     exact: f64,
-    at: MotionState,
+    at: RepeatedState,
 }
 
 /// Searches for linkages of these kinds until the best is believed, the limit is reached, or the patience is at an end;
@@ -64,19 +60,18 @@ pub(super) fn search(context: Context<'_>, kinds: &[LoopKind], allowance: Allowa
         return None;
     }
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().sliders.clone());
-    let earlier = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best));
     let exact = exact_cost(problem);
-    let at = earlier.unwrap_or_else(|| MotionState { belief: Belief::new(exact), ..MotionState::default() });
+    let at = RepeatedState::of(problem, earlier);
     let mut search = Sliders { target, kinds, exact, at };
     let mut reason = drive(context, allowance, &mut search);
     // Those of the rounds, whose best the polish takes on.
-    let (hits, near) = search.at.belief.hits();
+    let repeats = search.at.repeats();
     if search.polish(context, allowance.limit) {
         reason = if reason == Reason::TargetReached { reason } else { Reason::Converged };
     }
     let at = search.at;
     Some(Found {
-        repeats: at.best.is_some().then(|| Repeats::new(at.independent, hits as u64, near as u64)),
+        repeats,
         candidates: at.found,
         evaluations: at.evaluations,
         reason,
@@ -315,28 +310,12 @@ impl Sliders {
         for (candidate, used) in ends.into_iter().flatten() {
             self.at.evaluations += context.cost(used);
             if let Some(candidate) = candidate {
-                self.take(context, &candidate);
+                self.at.take(context.problem, &candidate, true);
                 self.at.found.push(candidate);
             }
         }
         sort(problem, &mut self.at.found);
         best(self) < before
-    }
-
-    /// Takes a candidate as the best if it is better.
-    fn take(&mut self, context: Context<'_>, candidate: &Candidate) {
-        if !promising(context.problem, candidate) {
-            return;
-        }
-        let error = searched(context.problem, candidate);
-        self.at.belief.came_to(error);
-        let bar = self.at.best.as_ref().map_or(f64::INFINITY, |best| searched(context.problem, best));
-        if error < bar {
-            if error < bar * (1.0 - NEARLY) {
-                self.at.reached = self.at.evaluations.objective;
-            }
-            self.at.best = Some(candidate.clone());
-        }
     }
 }
 
@@ -349,15 +328,7 @@ impl Strategy for Sliders {
     }
 
     fn standing(&self) -> Standing<'_> {
-        let MotionState { ref found, ref best, ref belief, evaluations, draws, .. } = self.at;
-        Standing {
-            evaluations: evaluations.objective,
-            draws,
-            best: best.as_ref(),
-            nearest: found.first(),
-            hits: best.as_ref().map(|_| HitsSoFar { came: belief.hits().0, wanted: HITS }),
-            is_cut: false,
-        }
+        self.at.standing(STOPPING.hits)
     }
 
     fn run(&mut self, context: Context<'_>, left: u64) -> (Self::Batch, bool) {
@@ -372,7 +343,7 @@ impl Strategy for Sliders {
             self.at.draws += outcome.draws;
             self.at.evaluations += outcome.evaluations;
             for candidate in outcome.found {
-                self.take(context, &candidate);
+                self.at.take(context.problem, &candidate, true);
                 self.at.found.push(candidate);
             }
             self.at.independent += 1;
@@ -387,14 +358,6 @@ impl Strategy for Sliders {
     }
 
     fn is_done(&mut self, context: Context<'_>) -> bool {
-        let at = &mut self.at;
-        let wanted = context.problem.spec().solve.candidates;
-        let is_exact = at.best.as_ref().is_some_and(|best| searched(context.problem, best) <= self.exact);
-        let (hits, near) = at.belief.hits();
-        let is_quiet = at.independent >= QUIET_ROUNDS && at.evaluations.objective >= QUIET_TIMES * at.reached;
-        let is_believed =
-            at.batch >= LEAST_BATCHES && (hits >= HITS || near >= NEAR_HITS || is_quiet && at.best.is_some());
-        (is_believed || is_exact)
-            && are_enough(context, &at.found, wanted, (&mut at.known, &mut at.quiet), QUIET_BATCHES)
+        self.at.is_done(context, &STOPPING)
     }
 }

@@ -25,14 +25,12 @@ use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
 };
 use crate::task::AngleOffset;
-use crate::task::forms::torus::Positions;
+use crate::task::forms::torus::{Positions, gaps_along, joined};
 
 /// Most Newton steps that bring a position back to its curve; each squares the miss.
 const RETURN_STEPS: usize = 12;
 /// Tolerance for a position on its curve: its miss over the largest length.
 const ON_CURVE: f64 = 1e-14;
-/// A distance between points that no step can close.
-const FAR_APART: f64 = 3.0;
 
 /// The crank angles of a fit.
 #[derive(Clone, Debug)]
@@ -208,18 +206,6 @@ fn tangent_of(miss: &Miss) -> Option<[f64; 2]> {
     (length > 0.0).then(|| [miss.by_coupler / length, -miss.by_crank / length])
 }
 
-/// Returns the distance along the curve from one position to a near one; `None` for positions that are far apart.
-fn way(from: [Complex; 2], from_tangent: [f64; 2], to: [Complex; 2], to_tangent: [f64; 2]) -> Option<f64> {
-    let turn = |i: usize| {
-        let z = to[i] * from[i].conj();
-        (z.re > 0.5).then_some(z.im)
-    };
-    let alike = from_tangent[0] * to_tangent[0] + from_tangent[1] * to_tangent[1];
-    let mean = [0.5 * (from_tangent[0] + to_tangent[0]), 0.5 * (from_tangent[1] + to_tangent[1])];
-    let (by_e, by_u) = (turn(0)?, turn(1)?);
-    (alike > 0.3).then_some(by_e * mean[0] + by_u * mean[1])
-}
-
 impl BlockLeastSquares<UNKNOWNS> for SliderFit<'_> {
     /// The positions; of prescribed crank angles they follow from the unknowns and are empty.
     type State = Positions;
@@ -332,24 +318,12 @@ impl BlockLeastSquares<UNKNOWNS> for SliderFit<'_> {
             return false;
         }
         let Some(shape) = SliderShape::of(self.kind, x) else { return false };
-        let tangents: Option<Vec<[f64; 2]>> = state.iter().map(|p| tangent_of(&shape.miss(*p))).collect();
-        let Some(tangents) = tangents.filter(|tangents| !tangents.is_empty()) else { return false };
-        for j in 1..state.len() {
-            let way = way(state[j - 1], tangents[j - 1], state[j], tangents[j]);
-            gaps.push(way.map_or(FAR_APART, |way| self.sense * way));
-        }
-        let last = state.len() - 1;
-        let gone: f64 = gaps.iter().sum();
-        let closing = way(state[last], tangents[last], state[0], tangents[0]).map(|way| self.sense * way);
-        let far = self.ends_meet || closing.is_none_or(|way| way < -0.1 * gone);
-        gaps.push(closing.filter(|_| !far).unwrap_or(FAR_APART));
-        true
+        let tangent = |position| tangent_of(&shape.miss(position));
+        gaps_along(state, tangent, self.sense, self.ends_meet, gaps)
     }
 
     fn join(&self, state: &mut Positions, leaders: &[usize]) {
-        for (j, &leader) in leaders.iter().enumerate() {
-            state[j] = state[leader];
-        }
+        joined(state, leaders);
     }
 
     fn constraints(&self, x: &Unknowns, state: &Positions, each: &mut EachConstraint<'_, UNKNOWNS>) {

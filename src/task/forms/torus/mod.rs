@@ -23,6 +23,7 @@
 //! The tangents are eliminated point by point in [`crate::numbers::optimise::levenberg_marquardt`].
 
 mod blocks;
+mod order;
 
 use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape};
 use super::rows::{Motion, Place, Requirements, Row, assembly_of};
@@ -36,6 +37,7 @@ use crate::numbers::optimise::levenberg_marquardt::{
 use crate::task::defect::ORDER_TOLERANCE;
 use crate::task::{Body, Problem, Setting};
 use blocks::{Blocks, Loop, RETURN_STEPS};
+pub(in crate::task::forms) use order::{gaps_along, joined};
 use std::f64::consts::TAU;
 
 /// The positions of all points: (e_j, u_j).
@@ -223,26 +225,6 @@ fn tangent_of(shape: &Shape, position: [Complex; 2]) -> Option<[f64; 2]> {
     let length = (by_e * by_e + by_u * by_u).sqrt();
     (length > 0.0).then(|| [by_u / length, -by_e / length])
 }
-
-/// Returns the distance along the curve from one position to a near one, positive along the tangent: the turns of crank
-/// and coupler along the mean of both tangents.
-///
-/// `None` for positions that are far apart (a radian, or tangents that differ by more than about 70 degrees): they
-/// cannot pass each other in one step, and their distance counts as [`FAR_APART`] in the `sense`.
-fn way(from: [Complex; 2], from_tangent: [f64; 2], to: [Complex; 2], to_tangent: [f64; 2]) -> Option<f64> {
-    let turn = |i: usize| {
-        let z = to[i] * from[i].conj();
-        // The sine suffices for small turns: only the order and a rough length are needed.
-        (z.re > 0.5).then_some(z.im)
-    };
-    let alike = from_tangent[0] * to_tangent[0] + from_tangent[1] * to_tangent[1];
-    let mean = [0.5 * (from_tangent[0] + to_tangent[0]), 0.5 * (from_tangent[1] + to_tangent[1])];
-    let (by_e, by_u) = (turn(0)?, turn(1)?);
-    (alike > 0.3).then_some(by_e * mean[0] + by_u * mean[1])
-}
-
-/// A distance between points that no step can close.
-const FAR_APART: f64 = 3.0;
 
 /// Returns +1 if the points run along the tangents of their curve, -1 if against; 0 if that is undecided.
 ///
@@ -489,30 +471,12 @@ impl<const R: usize> BlockLeastSquares<DESIGN, R> for TorusFit<'_, R> {
             return false;
         }
         let Some(shape) = self.space.shape(x) else { return false };
-        let mut tangents = state.iter().map(|p| tangent_of(&shape, *p));
-        let Some(Some(first)) = tangents.next() else { return false };
-        let mut last = first;
-        for (w, tangent) in state.windows(2).zip(tangents) {
-            let Some(tangent) = tangent else {
-                gaps.clear();
-                return false;
-            };
-            gaps.push(way(w[0], last, w[1], tangent).map_or(FAR_APART, |way| self.sense * way));
-            last = tangent;
-        }
-        // The last point must not run into the first from behind. If it is near, it has either gone almost all the way
-        // round or, on a short interval, not gone far.
-        let gone: f64 = gaps.iter().sum();
-        let closing = way(state[state.len() - 1], last, state[0], first).map(|way| self.sense * way);
-        let far = self.problem.task().repeats_first() || closing.is_none_or(|way| way < -0.1 * gone);
-        gaps.push(closing.filter(|_| !far).unwrap_or(FAR_APART));
-        true
+        let tangent = |position| tangent_of(&shape, position);
+        gaps_along(state, tangent, self.sense, self.problem.task().repeats_first(), gaps)
     }
 
     fn join(&self, state: &mut Positions, leaders: &[usize]) {
-        for (j, &leader) in leaders.iter().enumerate() {
-            state[j] = state[leader];
-        }
+        joined(state, leaders);
     }
 
     fn constraints(&self, x: &Design, state: &Positions, each: &mut EachConstraint<'_, DESIGN>) {

@@ -3,6 +3,8 @@
 //! Each is C = A + a e^{i phi}, a coupler through C that carries P, and one closure with two roots, told by t1; see
 //! [`slider`](super::slider). A four-bar's numbers are those of [`FourBar`], to the last digit.
 
+mod keys;
+
 use super::any::Mechanism;
 use super::four_bar::coupler_curve::SingleLoop;
 use super::four_bar::transmission::TransmissionExtremes;
@@ -11,8 +13,7 @@ use super::{
     InvertedSliderCrankParameters, Joints, LinkageError, LinkageType, NaturalCoordinates, OnCircuit,
     SliderCrank, SliderCrankParameters, SliderJoints, SliderLinkage, SliderPosition, least_and_greatest, xy,
 };
-use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
-use std::borrow::Cow;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A linkage of one loop.
@@ -531,193 +532,5 @@ impl std::fmt::Display for OneLoop {
             OneLoop::SliderCrank(linkage) => linkage.fmt(f),
             OneLoop::InvertedSliderCrank(linkage) => linkage.fmt(f),
         }
-    }
-}
-
-/// The name of the kind, as the key `kind` of a slider-crank.
-#[derive(Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum SliderCrankKind {
-    SliderCrank,
-}
-
-/// The name of the kind, as the key `kind` of an inverted slider-crank.
-#[derive(Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum InvertedSliderCrankKind {
-    InvertedSliderCrank,
-}
-
-/// A linkage as it stands in records: a four-bar by its keys alone, other kinds with their name under `kind`.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Written {
-    /// A four-bar.
-    FourBar(NaturalCoordinates),
-    /// A slider-crank.
-    SliderCrank {
-        /// The kind.
-        kind: SliderCrankKind,
-        #[serde(flatten)]
-        parameters: SliderCrankParameters,
-    },
-    /// An inverted slider-crank.
-    InvertedSliderCrank {
-        /// The kind.
-        kind: InvertedSliderCrankKind,
-        #[serde(flatten)]
-        parameters: InvertedSliderCrankParameters,
-    },
-}
-
-impl Serialize for OneLoop {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let written = match self {
-            OneLoop::FourBar(linkage) => Written::FourBar(linkage.natural_coordinates()),
-            OneLoop::SliderCrank(linkage) => {
-                Written::SliderCrank { kind: SliderCrankKind::SliderCrank, parameters: linkage.parameters() }
-            }
-            OneLoop::InvertedSliderCrank(linkage) => Written::InvertedSliderCrank {
-                kind: InvertedSliderCrankKind::InvertedSliderCrank,
-                parameters: linkage.parameters(),
-            },
-        };
-        written.serialize(serializer)
-    }
-}
-
-/// A linkage as it stands in records: every key of every kind.
-#[derive(Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "OneLoop")]
-struct Keys {
-    /// The kind; absent of a four-bar.
-    #[serde(default)]
-    kind: Option<LoopKind>,
-    /// The fixed pivot of the crank.
-    #[serde(rename = "A")]
-    crank_pivot: [f64; 2],
-    /// The fixed pivot of a four-bar's follower, or of the block of an inverted slider-crank.
-    #[serde(rename = "B", default)]
-    second_pivot: Option<[f64; 2]>,
-    /// |AC|.
-    a: f64,
-    /// |CD| of a four-bar and of a slider-crank.
-    #[serde(default)]
-    b: Option<f64>,
-    /// |BD| of a four-bar.
-    #[serde(default)]
-    c: Option<f64>,
-    /// |CP| of a four-bar.
-    #[serde(default)]
-    d: Option<f64>,
-    /// |DP| of a four-bar.
-    #[serde(default)]
-    e: Option<f64>,
-    /// Q, a point of a slider-crank's line, from which the slider's place counts.
-    #[serde(default)]
-    line_point: Option<[f64; 2]>,
-    /// The direction of a slider-crank's line from the x axis, degrees.
-    #[serde(default)]
-    line_deg: Option<f64>,
-    /// The distance of B to the left of the rod's line through C, of an inverted slider-crank.
-    #[serde(default)]
-    offset: Option<f64>,
-    /// P along the coupler from C, of kinds with a slider.
-    #[serde(default)]
-    coupler_x: Option<f64>,
-    /// P to the left of the coupler, of kinds with a slider.
-    #[serde(default)]
-    coupler_y: Option<f64>,
-    /// The assembly: of a four-bar 1 where D lies left of the line from C to B; of a slider-crank where D is the one of two
-    /// places that lies further along the line; of an inverted one where the block is ahead of C along the rod.
-    #[schemars(with = "i64")]
-    t1: AssemblyMode,
-    /// The side of a four-bar's coupler point: 1 where P lies left of the line from C to D.
-    #[serde(default)]
-    #[schemars(with = "Option<i64>")]
-    t2: Option<super::CouplerSide>,
-}
-
-impl Keys {
-    /// Returns the keys that are there although the kind has none of them.
-    fn stray(&self, kind: LoopKind) -> Option<&'static str> {
-        let (four_bar, slider, inverted) =
-            (kind == LoopKind::FourBar, kind == LoopKind::SliderCrank, kind == LoopKind::InvertedSliderCrank);
-        [
-            ("B", self.second_pivot.is_some() && slider),
-            ("b", self.b.is_some() && inverted),
-            ("c", self.c.is_some() && !four_bar),
-            ("d", self.d.is_some() && !four_bar),
-            ("e", self.e.is_some() && !four_bar),
-            ("t2", self.t2.is_some() && !four_bar),
-            ("line_point", self.line_point.is_some() && !slider),
-            ("line_deg", self.line_deg.is_some() && !slider),
-            ("offset", self.offset.is_some() && !inverted),
-            ("coupler_x", self.coupler_x.is_some() && four_bar),
-            ("coupler_y", self.coupler_y.is_some() && four_bar),
-        ]
-        .into_iter()
-        .find_map(|(key, strays)| strays.then_some(key))
-    }
-}
-
-impl<'de> Deserialize<'de> for OneLoop {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        fn given<T, E: Error>(value: Option<T>, key: &'static str) -> Result<T, E> {
-            value.ok_or_else(|| E::missing_field(key))
-        }
-        let keys = Keys::deserialize(deserializer)?;
-        let kind = keys.kind.unwrap_or(LoopKind::FourBar);
-        if let Some(key) = keys.stray(kind) {
-            return Err(D::Error::custom(format!("a {kind} has no key `{key}`")));
-        }
-        let (crank_pivot, crank, assembly) = (keys.crank_pivot, keys.a, keys.t1);
-        let found = match kind {
-            LoopKind::FourBar => FourBar::new(NaturalCoordinates {
-                crank_pivot,
-                follower_pivot: given(keys.second_pivot, "B")?,
-                crank,
-                coupler: given(keys.b, "b")?,
-                follower: given(keys.c, "c")?,
-                crank_side: given(keys.d, "d")?,
-                follower_side: given(keys.e, "e")?,
-                assembly,
-                side: given(keys.t2, "t2")?,
-            })
-            .map(OneLoop::FourBar),
-            LoopKind::SliderCrank => SliderCrank::new(SliderCrankParameters {
-                crank_pivot,
-                crank,
-                coupler: given(keys.b, "b")?,
-                line_point: given(keys.line_point, "line_point")?,
-                line_deg: given(keys.line_deg, "line_deg")?,
-                coupler_x: given(keys.coupler_x, "coupler_x")?,
-                coupler_y: given(keys.coupler_y, "coupler_y")?,
-                assembly,
-            })
-            .map(OneLoop::SliderCrank),
-            LoopKind::InvertedSliderCrank => InvertedSliderCrank::new(InvertedSliderCrankParameters {
-                crank_pivot,
-                block_pivot: given(keys.second_pivot, "B")?,
-                crank,
-                offset: given(keys.offset, "offset")?,
-                coupler_x: given(keys.coupler_x, "coupler_x")?,
-                coupler_y: given(keys.coupler_y, "coupler_y")?,
-                assembly,
-            })
-            .map(OneLoop::InvertedSliderCrank),
-        };
-        found.map_err(D::Error::custom)
-    }
-}
-
-impl schemars::JsonSchema for OneLoop {
-    fn schema_name() -> Cow<'static, str> {
-        "OneLoop".into()
-    }
-
-    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        Keys::json_schema(generator)
     }
 }
