@@ -313,8 +313,7 @@ export class JobsPanel {
                   cell(row.figures.transmission, "°"),
                   cell(row.figures.link_ratio),
                   cell(row.figures.extent),
-                  // Only a four-bar has all its lengths here.
-                  cell(row.linkage.kind ? Number.NaN : longestOf(row.linkage as Solution["shown"]["linkage"])),
+                  cell(longestOf(row.linkage as Solution["shown"]["linkage"])),
                   element("td", {}, [row.type]),
                   element("td", { class: row.accepted ? "good" : "bad" }, [row.accepted ? "yes" : "no"]),
                 ]),

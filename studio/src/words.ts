@@ -45,7 +45,7 @@ export function transmissionInWords(deg: number): Graded {
 }
 
 /** The longest of ground, a, b, c, d and e. */
-export function longestOf({ A, B, a, b, c, d, e }: Shown["linkage"]): number {
+export function longestOf({ A, B = [] as never, a, b, c, d, e }: Shown["linkage"]): number {
   return Math.max(Math.hypot(B[0] - A[0], B[1] - A[1]), ...[a, b, c, d, e].map(Math.abs));
 }
 

@@ -6,6 +6,7 @@ import { test } from "node:test";
 import { Cycle } from "../../src/report/html/player/cycle.mjs";
 import { draggedTo, inputAt, placeOf, rangeOf, within, wrappedDeg } from "../../src/report/html/player/drive.mjs";
 import { kernelOf, motionAt, positionAt, transmissionAngle } from "../../src/report/html/player/kinematics.mjs";
+import "../../src/report/html/player/sliders.mjs";
 import { angleTicks, figure, roundLength, ticks, tickTexts } from "../../src/report/html/player/svg.mjs";
 
 const golden = JSON.parse(readFileSync(new URL("golden.json", import.meta.url), "utf8"));

@@ -49,8 +49,8 @@ pub use motion::{Drive, DriveKind};
 
 /// The player's modules, each after those that it imports.
 pub(super) const PLAYER: [&str; 8] = [
-    include_str!("player/sliders.mjs"),
     include_str!("player/kinematics.mjs"),
+    include_str!("player/sliders.mjs"),
     include_str!("player/drive.mjs"),
     include_str!("player/svg.mjs"),
     include_str!("player/cycle.mjs"),
@@ -58,8 +58,12 @@ pub(super) const PLAYER: [&str; 8] = [
     include_str!("player/chart.mjs"),
     include_str!("player/player.mjs"),
 ];
-/// The modules of the report alone: the body of a motion, the page.
-const REPORT: [&str; 2] = [include_str!("player/body.mjs"), include_str!("report.mjs")];
+/// The modules of the report alone: drawings of sliders, the body of a motion, the page.
+const REPORT: [&str; 3] = [
+    include_str!("player/slider_stage.mjs"),
+    include_str!("player/body.mjs"),
+    include_str!("report.mjs"),
+];
 /// The style sheet of the player, with its colours.
 pub(super) const PLAYER_STYLE: &str = include_str!("player/player.css");
 

@@ -1,37 +1,37 @@
-// Positions, velocities and accelerations of linkages of one loop: four-bars in natural coordinates, and linkages with a
-// slider (sliders.mjs).
+// Positions, velocities and accelerations of linkages of one loop: four-bars in natural coordinates, and the kinds that
+// other modules add (sliders.mjs).
 //
 // The same equations as the Rust kernel (position.rs, motion.rs, transmission.rs of the four-bar; Romero Nunez 2016,
 // equations 10 to 19; De Castro 8 to 24), in the same order, so that they agree to rounding. tests/browser holds them
 // beside each other. Angles are in radians here, points are [x, y].
 
-import { FLAT_TOLERANCE, isSlider, sliderAt, sliderMu, sliderOf, sliderRates } from "./sliders.mjs";
-
 /** @typedef {[number, number]} Point */
 /** @typedef {{A: Point, B: Point, a: number, b: number, c: number, d: number, e: number, t1: number, t2: number}} FourBar */
 /** @typedef {FourBar | import("./sliders.mjs").Slider} Linkage */
 /** @typedef {{C: Point, D: Point, P: Point, u?: Point}} Joints u: the direction of a slider's coupler */
-/** @typedef {{A: Point, B: Point, a: number, b: number, c: number, couplerSq: number, halfDifference: number, z: Point}} Kernel */
+/** @typedef {{A: Point, B: Point, a: number, b: number, c: number, couplerSq: number, halfDifference: number, z: Point}} FourBarKernel */
+/** @typedef {{vP: Point, aP: Point, omega3: number, omega4: number}} Rates */
+/** @typedef {{solve: (angle: number, t1: number) => Joints | null, mu: (joints: any) => number, rates: (joints: any, omega: number, alpha: number) => Rates | null}} OtherKernel what positionAt, transmissionAngle and motionAt ask of a kind beside the four-bar */
+/** @typedef {FourBarKernel & Partial<OtherKernel>} Kernel */
 
+/** The kinds of linkages beside the four-bar: the kernel of a linkage, by its key `kind`. @type {Record<string, (linkage: any) => any>} */
+export const otherKinds = {};
+
+/** A loop that misses closure by less than this part of its scale is taken as flat. */
+export const FLAT_TOLERANCE = 1e-12;
 /** |sin mu| at and below which a position counts as a toggle. */
 const TOGGLE_SINE = 1e-12;
 /** The same for sin^2 mu, as a part of (b^2 + c^2 + s (|A| + |B| + a))/(b c). */
 const TOGGLE_ROUNDING = 64 * Number.EPSILON;
 
 /**
- * The numbers that the equations of a linkage multiply with.
- * @param {Linkage} linkage
+ * The numbers that the equations multiply with; of a four-bar z = (l2 + i h2)/b, so that P = C + z (D - C).
+ * @param {any} linkage a Linkage
  * @returns {Kernel}
  */
-export const kernelOf = (linkage) =>
-  isSlider(linkage) ? /** @type {any} */ (sliderOf(linkage)) : fourBarKernel(/** @type {FourBar} */ (linkage));
-
-/**
- * The numbers that the equations multiply with; z = (l2 + i h2)/b, so that P = C + z (D - C).
- * @param {FourBar} linkage
- * @returns {Kernel}
- */
-function fourBarKernel(linkage) {
+export function kernelOf(linkage) {
+  const other = otherKinds[linkage.kind];
+  if (other) return other(linkage);
   const { A, B, a, b, c, d, e, t2 } = linkage;
   const along = (b + ((d - e) * (d + e)) / b) / 2;
   let areaSq = b + d + e;
@@ -48,7 +48,7 @@ function fourBarKernel(linkage) {
  * @returns {Joints | null}
  */
 export function positionAt(k, angle, t1) {
-  if (isSlider(k)) return sliderAt(k, angle, t1);
+  if (k.solve) return k.solve(angle, t1);
   const cx = k.A[0] + k.a * Math.cos(angle);
   const cy = k.A[1] + k.a * Math.sin(angle);
   const vx = k.B[0] - cx;
@@ -72,7 +72,7 @@ export function positionAt(k, angle, t1) {
  * @param {Joints} joints
  */
 export function transmissionAngle(k, joints) {
-  if (isSlider(k)) return sliderMu(k, joints);
+  if (k.mu) return k.mu(joints);
   const s = Math.hypot(k.B[0] - joints.C[0], k.B[1] - joints.C[1]);
   const near = Math.max((s - (k.b - k.c)) * (s + (k.b - k.c)), 0);
   const far = Math.max((k.b + k.c - s) * (k.b + k.c + s), 0);
@@ -85,10 +85,10 @@ export function transmissionAngle(k, joints) {
  * @param {Joints} joints
  * @param {number} omega speed of the crank, rad/s
  * @param {number} alpha acceleration of the crank, rad/s^2
- * @returns {{vP: Point, aP: Point, omega3: number, omega4: number} | null}
+ * @returns {Rates | null}
  */
 export function motionAt(k, joints, omega, alpha) {
-  if (isSlider(k)) return sliderRates(k, joints, omega, alpha);
+  if (k.rates) return k.rates(joints, omega, alpha);
   const { C, D } = joints;
   const [wx, wy] = [D[0] - C[0], D[1] - C[1]];
   const [rx, ry] = [D[0] - k.B[0], D[1] - k.B[1]];

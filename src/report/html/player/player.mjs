@@ -30,7 +30,7 @@ export class Player {
   /**
    * @param {HTMLElement} stagePlace where the drawing and the transport go
    * @param {HTMLElement} chartPlace where the charts go
-   * @param {{unit: string | null, target: any, transmissionMin: number | null, onPose?: (stage: any, joints: any) => void}} options
+   * @param {{unit: string | null, target: any, transmissionMin: number | null, Stage?: typeof Stage, onPose?: (stage: any, joints: any) => void}} options
    */
   constructor(stagePlace, chartPlace, options) {
     this.options = options;
@@ -43,7 +43,7 @@ export class Player {
     const { unit, onPose } = options;
     /** The word for one of the target's points. */
     this.noun = options.target.noun ?? "point";
-    this.stage = new Stage(stagePlace, {
+    this.stage = new (options.Stage ?? Stage)(stagePlace, {
       unit,
       onPose,
       onDrag: (crankDeg) => this.dragTo(crankDeg),

@@ -4,29 +4,28 @@
 // closure Im((C + b u - Q) conj s) = 0, or Im((B - C) conj u) = h. D is the slider's pin, or the foot of the perpendicular
 // from B on the rod. Angles are in radians here, points are [x, y].
 
+import { FLAT_TOLERANCE, otherKinds } from "./kinematics.mjs";
+
 /** @typedef {[number, number]} Point */
 /** @typedef {{kind: "slider-crank", A: Point, a: number, b: number, line_point: Point, line_deg: number, coupler_x: number, coupler_y: number, t1: number}} SliderCrank */
 /** @typedef {{kind: "inverted-slider-crank", A: Point, B: Point, a: number, offset: number, coupler_x: number, coupler_y: number, t1: number}} InvertedSliderCrank */
 /** @typedef {SliderCrank | InvertedSliderCrank} Slider */
-/** @typedef {{kind: string, A: Point, B?: Point, a: number, b: number, Q: Point, s: Point, h: number, z: Point}} SliderKernel */
+/** @typedef {{kind: string, A: Point, B?: Point, a: number, b: number, Q: Point, s: Point, h: number, z: Point} & import("./kinematics.mjs").OtherKernel} SliderKernel */
 /** @typedef {{C: Point, D: Point, P: Point, u: Point}} SliderJoints */
 
-/** A loop that misses closure by less than this part of its scale is taken as flat. */
-export const FLAT_TOLERANCE = 1e-12;
 /** The sine of the transmission angle at and below which a position counts as a toggle. */
 const SLIDER_TOGGLE = 1e-7;
 
-const inner = (p, q) => p[0] * q[0] + p[1] * q[1];
+/** The inner product of two vectors. */
+export const inner = (p, q) => p[0] * q[0] + p[1] * q[1];
 const outer = (p, q) => p[0] * q[1] - p[1] * q[0];
 
-/** Whether a linkage or a kernel is one with a slider. @param {any} linkage @returns {boolean} */
-export const isSlider = (linkage) => linkage.kind === "slider-crank" || linkage.kind === "inverted-slider-crank";
-
 /** @param {any} linkage @returns {SliderKernel} */
-export function sliderOf(linkage) {
+function sliderOf(linkage) {
   const { kind, A, B, a, b, line_point = [0, 0], line_deg = 0, offset = 0, coupler_x, coupler_y } = linkage;
   const angle = (line_deg * Math.PI) / 180;
-  return {
+  /** @type {SliderKernel} */
+  const kernel = {
     kind,
     A,
     B,
@@ -36,15 +35,21 @@ export function sliderOf(linkage) {
     s: [Math.cos(angle), Math.sin(angle)],
     h: offset,
     z: [coupler_x, coupler_y],
+    solve: (angle, t1) => sliderAt(kernel, angle, t1),
+    mu: (joints) => sliderMu(kernel, joints),
+    rates: (joints, omega, alpha) => sliderRates(kernel, joints, omega, alpha),
   };
+  return kernel;
 }
+
+for (const kind of ["slider-crank", "inverted-slider-crank"]) otherKinds[kind] = sliderOf;
 
 /**
  * The joints at a crank angle, with the coupler's direction u; null where the loop is open.
  * @param {any} k @param {number} angle @param {number} t1
  * @returns {SliderJoints | null}
  */
-export function sliderAt(k, angle, t1) {
+function sliderAt(k, angle, t1) {
   /** @type {Point} */
   const C = [k.A[0] + k.a * Math.cos(angle), k.A[1] + k.a * Math.sin(angle)];
   /** @type {Point} */
@@ -75,7 +80,7 @@ export function sliderAt(k, angle, t1) {
 }
 
 /** The transmission angle in [0, pi/2]. @param {any} k @param {any} joints */
-export function sliderMu(k, { C, u }) {
+function sliderMu(k, { C, u }) {
   if (k.kind === "slider-crank") return Math.atan2(Math.abs(inner(k.s, u)), Math.abs(outer(k.s, u)));
   return Math.atan2(Math.abs(inner(u, [k.B[0] - C[0], k.B[1] - C[1]])), Math.abs(k.h));
 }
@@ -85,7 +90,7 @@ export function sliderMu(k, { C, u }) {
  * @param {any} k @param {any} joints @param {number} omega rad/s @param {number} alpha rad/s^2
  * @returns {{vP: Point, aP: Point, omega3: number, omega4: number} | null}
  */
-export function sliderRates(k, joints, omega, alpha) {
+function sliderRates(k, joints, omega, alpha) {
   const { C, P, u } = joints;
   if (Math.sin(sliderMu(k, joints)) <= SLIDER_TOGGLE) return null;
   const arm = [C[0] - k.A[0], C[1] - k.A[1]];
@@ -110,34 +115,4 @@ export function sliderRates(k, joints, omega, alpha) {
     // The block of an inverted one turns with the rod.
     omega4: k.kind === "slider-crank" ? 0 : omega3,
   };
-}
-
-/** The part of the slider's range that its rail or rod reaches beyond it. */
-const BEYOND = 0.12;
-
-/**
- * The rail or the rod: a point of it and its direction at a position, and how far it reaches along.
- * @param {any} k @param {any[]} circuit the joints along the circuit
- * @returns {{moves: boolean, reach: [number, number]}}
- */
-export function guideOf(k, circuit) {
-  const rail = k.kind === "slider-crank";
-  let [low, high] = rail ? [Infinity, -Infinity] : [0, 0];
-  for (const joints of circuit) {
-    if (!joints) continue;
-    const from = rail ? k.Q : joints.C;
-    const place = inner(rail ? k.s : joints.u, [joints.D[0] - from[0], joints.D[1] - from[1]]);
-    [low, high] = [Math.min(low, place), Math.max(high, place)];
-  }
-  const more = BEYOND * (high - low);
-  return {
-    moves: !rail,
-    reach: rail ? [low - more, high + more] : [low < 0 ? low - more : 0, high > 0 ? high + more : 0],
-  };
-}
-
-/** The two ends of the rail or the rod at a position. @param {any} k @param {{reach: [number, number]}} guide @param {any} joints @returns {Point[]} */
-export function guideEnds(k, { reach }, joints) {
-  const [from, along] = k.kind === "slider-crank" ? [k.Q, k.s] : [joints.C, joints.u];
-  return reach.map((place) => [from[0] + along[0] * place, from[1] + along[1] * place]);
 }

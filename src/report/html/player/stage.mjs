@@ -1,6 +1,5 @@
 // The drawing that moves: the linkage over its target, its crank dragged by the hand.
 
-import { guideEnds, guideOf, isSlider } from "./sliders.mjs";
 import { angleTicks, element, figure, minus, pathThrough, px, roundLength, setAll, shape } from "./svg.mjs";
 
 /** Room around the geometry for letters and stands, pixels. */
@@ -133,11 +132,9 @@ export class Stage {
   makeMovingParts() {
     const line = (name) => shape("path", { class: name });
     this.parts = {
-      rail: line("rail"),
       coupler: line("coupler"),
       bars: line("bar-edge"),
       barsInside: line("bar"),
-      block: line("block"),
       pinA: shape("circle", { class: "pin", r: 5.4 }),
       pinB: shape("circle", { class: "pin", r: 5.4 }),
       pinD: shape("circle", { class: "pin", r: 4.4 }),
@@ -201,14 +198,6 @@ export class Stage {
     this.cycle = cycle;
     this.closed = closed;
     this.circuit = cycle.circuit();
-    const { kernel } = cycle;
-    this.guide = isSlider(kernel) ? guideOf(kernel, this.circuit) : null;
-    const hasB = "B" in cycle.mechanism.linkage;
-    this.parts.pinB.classList.toggle("absent", !hasB);
-    this.letters.B.classList.toggle("absent", !hasB);
-    for (const name of ["rail", "block"]) this.parts[name].classList.toggle("absent", !this.guide);
-    // The foot on a rod is no pin.
-    this.parts.pinD.classList.toggle("absent", !!this.guide?.moves);
     this.layOut();
   }
 
@@ -225,19 +214,23 @@ export class Stage {
 
   targetBox() {
     const { points } = this.cycle;
-    return boxOf(points.flatMap((point) => (point.reached ? [point.target, point.reached] : [point.target])));
+    return boxOf(points.flatMap(({ target, reached }) => [target, reached ?? target]));
   }
 
   wholeBox() {
-    const { A, B } = /** @type {any} */ (this.cycle.mechanism.linkage);
-    const moving = this.circuit.flatMap((joints) => (joints ? [joints.C, joints.D, joints.P] : []));
-    const ends = this.guide ? this.circuit.flatMap((joints) => (joints ? this.guideAt(joints) : [])) : [];
-    return boxOf([A, ...(B ? [B] : []), ...moving, ...ends, ...this.cycle.points.map((point) => point.target)]);
+    const moving = this.circuit.flatMap((joints) => (joints ? this.placesOf(joints) : []));
+    return boxOf([...moving, ...this.pivots(), ...this.cycle.points.map((point) => point.target)]);
   }
 
-  /** The two ends of the rail or the rod. */
-  guideAt(joints) {
-    return guideEnds(this.cycle.kernel, this.guide, joints);
+  /** The fixed pivots. @returns {[number, number][]} */
+  pivots() {
+    const { A, B } = /** @type {any} */ (this.cycle.mechanism.linkage);
+    return [A, B];
+  }
+
+  /** The places of a position: A, B, C, D, P. @returns {any} */
+  placesOf(joints) {
+    return [...this.pivots(), joints.C, joints.D, joints.P];
   }
 
   /** Draws what stands still, for the width that there is. */
@@ -266,7 +259,6 @@ export class Stage {
 
   ground() {
     if (this.look === "target") return [];
-    const { A, B } = /** @type {any} */ (this.cycle.mechanism.linkage);
     const stand = ([x, y]) => {
       let hatch = "";
       for (let i = 0; i < 6; i += 1) hatch += `M${px(x - 14 + 5.6 * i)} ${px(y + 16)}l-4.5 5.5`;
@@ -275,8 +267,8 @@ export class Stage {
         shape("path", { d: `M${px(x - 16)} ${px(y + 16)}h32${hatch}` }),
       ]);
     };
-    const pivots = (B ? [A, B] : [A]).map(this.toPixel);
-    return [shape("path", { class: "ground", d: pathThrough(pivots) }), ...pivots.map(stand)];
+    const at = this.pivots().map(this.toPixel);
+    return [shape("path", { class: "ground", d: pathThrough(at) }), ...at.map(stand)];
   }
 
   curves() {
@@ -327,10 +319,8 @@ export class Stage {
   /** Numbers outside of the target: all where they are few, else round ones, and the worst point's. */
   numbers(spots, radius, worst) {
     const { points } = this.cycle;
-    const step =
-      [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000].find(
-        (s) => points.length <= NUMBERED * s,
-      ) ?? 100000;
+    // The least of 1, 2, 5, 10, 20 and so on that leaves few enough.
+    const step = Math.round(1 / roundLength(NUMBERED / points.length)) || 1;
     const middle = [0, 1].map((axis) => spots.reduce((sum, spot) => sum + spot[axis], 0) / (spots.length || 1));
     const curve = this.circuit.flatMap((joints, i) => (joints && i % 3 === 0 ? [this.toPixel(joints.P)] : []));
     const labels = new Labels([...curve, ...spots]);
@@ -368,16 +358,11 @@ export class Stage {
     ];
   }
 
-  /** The outline of the block at a position. */
-  blockAt(joints) {
-    const { kernel } = this.cycle;
-    return outlineAt(this.toPixel(joints.D), this.guide.moves ? joints.u : /** @type {any} */ (kernel).s);
-  }
-
-  /** The foot of the perpendicular from P on the rod. @returns {[number, number]} */
-  belowPoint(/** @type {any} */ { C, u }) {
-    const along = this.cycle.kernel.z[0];
-    return [C[0] + u[0] * along, C[1] + u[1] * along];
+  /** Draws the links with their places at these pixels. @param {any} places @param {any} _joints */
+  drawLinks([a, b, c, d, p], _joints) {
+    const { coupler, bars, barsInside } = this.parts;
+    setAll(coupler, { d: `${pathThrough([c, d, p])}Z` });
+    for (const bar of [bars, barsInside]) setAll(bar, { d: pathThrough([a, c, null, c, d, null, b, d]) });
   }
 
   /** Moves the linkage to q. @param {number} q */
@@ -388,21 +373,10 @@ export class Stage {
     this.options.onPose?.(this, joints);
     this.moving.classList.toggle("absent", !joints);
     if (!joints) return;
-    const { A, B } = /** @type {any} */ (this.cycle.mechanism.linkage);
-    const [a, b, c, d, p] = [A, B ?? joints.D, joints.C, joints.D, joints.P].map(this.toPixel);
-    const links = this.guide ? pathThrough([a, c]) : pathThrough([a, c]) + pathThrough([c, d]) + pathThrough([b, d]);
+    const places = this.placesOf(joints).map(this.toPixel);
+    const [a, b, c, d, p] = places;
     const { parts, letters } = this;
-    // An arm holds a block at its pivot.
-    const bars = links + (this.guide?.moves ? pathThrough([b, d]) : "");
-    // The plate of a rod ends below P.
-    const corner = this.guide?.moves ? this.toPixel(this.belowPoint(joints)) : d;
-    setAll(parts.coupler, { d: `${pathThrough([c, corner, p])}Z` });
-    if (this.guide) {
-      setAll(parts.rail, { d: pathThrough(this.guideAt(joints).map(this.toPixel)) });
-      setAll(parts.block, { d: this.blockAt(joints) });
-    }
-    setAll(parts.bars, { d: bars });
-    setAll(parts.barsInside, { d: bars });
+    this.drawLinks(places, joints);
     const seats = { pinA: a, pinB: b, pinC: c, pinD: d, P: p, grip: c };
     for (const [name, [cx, cy]] of Object.entries(seats)) setAll(parts[name], { cx: px(cx), cy: px(cy) });
     const near = this.cycle.nearestPoint(q);
@@ -419,17 +393,10 @@ export class Stage {
     }
     const crank = this.cycle.crankDeg(q);
     setAll(parts.grip, {
-      "aria-valuenow": figure(crank, 5).replace("−", "-"),
+      "aria-valuenow": +crank.toPrecision(5),
       "aria-valuetext": `${figure(crank, 4)} degrees`,
     });
   }
-}
-
-/** The outline of a block of 22 by 13 pixels along a direction of the plane. */
-function outlineAt([x, y], [ux, uy]) {
-  /** @returns {[number, number]} */
-  const corner = (i, j) => [x + 11 * i * ux + 6.5 * j * uy, y - 11 * i * uy + 6.5 * j * ux];
-  return `${pathThrough([corner(1, 1), corner(-1, 1), corner(-1, -1), corner(1, -1)])}Z`;
 }
 
 /** Marks under a slider: where the points are, and the part that they use. */
