@@ -12,23 +12,28 @@
 //! | closed-60 | 60 points of the whole curve of a crank that turns fully |
 //! | open-30 | 30 points over 90 to 300 degrees of such a crank |
 //! | timed-18 | 18 points over a whole turn, with their crank angles |
+//! | poses-8 | 8 poses of the coupler over 90 to 300 degrees of such a crank |
+//! | timed-poses-8 | such poses with their crank angles |
 //! | mixed | half by four-bars and half by sliders, all three kinds searched for; closed, 60 points |
 //!
 //! Linkages are drawn whose lengths, pivots and rail lie within the default bounds of their target. *Recovered* is an
-//! accepted first candidate with rms/size below 1e-9 (in the mixed class: of the kind that drew the target). One thread, one
+//! accepted first candidate with rms/size below 1e-9 (of poses also in radians; in the mixed class: of the kind that drew the
+//! target). One thread, one
 //! answer asked for, `longest_max = "any"`. Times are those of the search.
 
 #![expect(clippy::print_stdout, reason = "the table is what this program is for")]
 
 use linkwright::Problem;
 use linkwright::internals::app::job::run::{Context, Job, run};
+use linkwright::internals::files::problem_file::parse;
 use linkwright::internals::mechanism::{
     AssemblyMode, Complex, FourBar, InvertedSliderCrank, LoopKind, OneLoop, SliderCrank, bounding_box, xy,
 };
 use linkwright::internals::numbers::arithmetic::streams::{Stream, below, stream, uniform};
+use linkwright::internals::record::Candidate;
 use linkwright::internals::record::statistics::median;
 use linkwright::internals::task::AngleOffset;
-use linkwright::internals::task::spec::{DesignSpec, SolveSpec};
+use linkwright::internals::task::spec::{DesignSpec, ProblemSpec, SolveSpec};
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::AtomicBool;
 
@@ -45,6 +50,34 @@ enum Points {
     Closed,
     Open,
     Timed,
+    Poses,
+    TimedPoses,
+}
+
+impl Points {
+    const ALL: [(&str, Points); 5] = [
+        ("closed-60", Points::Closed),
+        ("open-30", Points::Open),
+        ("timed-18", Points::Timed),
+        ("poses-8", Points::Poses),
+        ("timed-poses-8", Points::TimedPoses),
+    ];
+
+    fn is_timed(self) -> bool {
+        matches!(self, Points::Timed | Points::TimedPoses)
+    }
+
+    fn is_motion(self) -> bool {
+        matches!(self, Points::Poses | Points::TimedPoses)
+    }
+}
+
+/// What is asked for: points, the angles of the body there and those of the crank, in degrees.
+struct Asked {
+    linkage: OneLoop,
+    points: Vec<Complex>,
+    body_deg: Vec<f64>,
+    crank_deg: Vec<f64>,
 }
 
 /// Draws a linkage of a kind whose crank turns fully, with joints within a few cranks of each other.
@@ -104,8 +137,8 @@ fn within_bounds(linkage: &OneLoop, points: &[Complex]) -> bool {
         && z.re.abs().max(z.im.abs()) <= REACH * size
 }
 
-/// Draws a linkage and points of its curve, with their crank angles (degrees).
-fn target(kind: LoopKind, of: Points, draws: &mut Stream) -> (OneLoop, Vec<Complex>, Vec<f64>) {
+/// Draws a linkage and places of its coupler.
+fn target(kind: LoopKind, of: Points, draws: &mut Stream) -> Asked {
     loop {
         let Some(linkage) = drawn(kind, draws) else { continue };
         let from = uniform(draws, -PI, PI);
@@ -113,37 +146,67 @@ fn target(kind: LoopKind, of: Points, draws: &mut Stream) -> (OneLoop, Vec<Compl
             Points::Closed => (60, TAU * 59.0 / 60.0),
             Points::Open => (30, uniform(draws, 0.5 * PI, 300.0_f64.to_radians())),
             Points::Timed => (18, TAU * 17.0 / 18.0),
+            Points::Poses | Points::TimedPoses => (8, uniform(draws, 0.5 * PI, 300.0_f64.to_radians())),
         };
         let angles: Vec<f64> = (0..n).map(|j| from + span * f64::from(j) / f64::from(n - 1)).collect();
-        let at = |angle: &f64| Some(linkage.joints_with(*angle, linkage.assembly())?.joints.coupler_point);
-        let Some(points) = angles.iter().map(at).collect::<Option<Vec<_>>>() else { continue };
+        let at = |angle: &f64| linkage.joints_with(*angle, linkage.assembly());
+        let Some(places) = angles.iter().map(at).collect::<Option<Vec<_>>>() else { continue };
+        let points: Vec<Complex> = places.iter().map(|at| at.joints.coupler_point).collect();
         if within_bounds(&linkage, &points) {
-            return (linkage, points, angles.iter().map(|a| (a - from).to_degrees()).collect());
+            let frame = if of.is_motion() { uniform(draws, -PI, PI) } else { 0.0 };
+            return Asked {
+                linkage,
+                points,
+                body_deg: places.iter().map(|at| (at.coupler.arg() + frame).to_degrees()).collect(),
+                crank_deg: angles.iter().map(|a| (a - from).to_degrees()).collect(),
+            };
         }
     }
 }
 
-/// Searches for a target, and returns the kind, the rms over the size and the milliseconds of the search.
-fn search(
-    points: &[Complex],
-    crank_deg: &[f64],
-    of: Points,
-    mechanism: &[LoopKind],
-    seed: u64,
-) -> (Option<LoopKind>, f64, f64) {
-    let points: Vec<[f64; 2]> = points.iter().copied().map(xy).collect();
+/// Returns the problem of a path.
+fn path(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> ProblemSpec {
+    let points: Vec<[f64; 2]> = asked.points.iter().copied().map(xy).collect();
     let design = DesignSpec { mechanism: mechanism.to_vec(), ..DesignSpec::default() };
     let mut builder = Problem::builder(points).closed(of == Points::Closed).any_longest().design(design);
-    if of == Points::Timed {
-        builder = builder.timing(crank_deg.to_vec(), AngleOffset::Free);
+    if of.is_timed() {
+        builder = builder.timing(asked.crank_deg.clone(), AngleOffset::Free);
     }
     let solve = SolveSpec { candidates: 1, seed, ..SolveSpec::default() };
-    let spec = builder.solve(solve).spec().expect("a problem");
+    builder.solve(solve).spec().expect("a problem")
+}
+
+/// Returns the problem of a motion.
+fn motion(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> ProblemSpec {
+    let pose = |(point, deg): (&Complex, &f64)| format!("[{:?}, {:?}, {deg:?}]", point.re, point.im);
+    let poses: Vec<String> = asked.points.iter().zip(&asked.body_deg).map(pose).collect();
+    let timing = if of.is_timed() {
+        format!("[task.motion.timing]\ncrank_deg = {:?}\n", asked.crank_deg)
+    } else {
+        String::new()
+    };
+    let kinds: Vec<&str> = mechanism.iter().map(|kind| kind.name()).collect();
+    let text = format!(
+        "format = 1\n[task.motion]\nposes = [{}]\n{timing}[design]\nmechanism = {kinds:?}\n[require]\nlongest_max = \"any\"\n\
+         [solve]\nseed = {seed}\ncandidates = 1\nadvice = false\n",
+        poses.join(", ")
+    );
+    parse("motion.toml", &text, None, &[]).unwrap_or_else(|why| panic!("{why}")).spec
+}
+
+/// Searches for a target, and returns the kind, the rms over the size (of poses with their angles) and the milliseconds of
+/// the search.
+fn search(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> (Option<LoopKind>, f64, f64) {
+    let of_task = if of.is_motion() { motion } else { path };
+    let spec = of_task(asked, of, mechanism, seed);
     let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
     let finished = run(&Job::new("sliders", spec), &context).expect("a search");
     let ms = 1e3 * finished.search_s;
     let best = finished.record.candidates.first().filter(|c| c.accepted);
-    (best.map(|c| c.linkage.kind()), best.map_or(f64::INFINITY, |c| c.error.rms_over_size), ms)
+    let error = |c: &Candidate| {
+        c.error.rms_over_size.max(c.error.angle.as_ref().map_or(0.0, |angle| angle.rms_deg.to_radians()))
+    };
+    (best.map(|c| c.linkage.kind()), best.map_or(f64::INFINITY, error), ms)
 }
 
 fn main() {
@@ -159,8 +222,7 @@ fn main() {
     let sliders = [LoopKind::SliderCrank, LoopKind::InvertedSliderCrank];
     println!("{:<34} {:>10} {:>10} {:>10} {:>10}", "class", "recovered", "median ms", "90 %", "largest");
     let mut seen = 0;
-    for (name, of) in [("closed-60", Points::Closed), ("open-30", Points::Open), ("timed-18", Points::Timed)]
-    {
+    for (name, of) in Points::ALL {
         for kind in sliders {
             let class = format!("{name} {kind}");
             if class.contains(filter) {
@@ -191,22 +253,21 @@ fn main() {
 /// Searches for each target, among `mechanism` or, if that is empty, among its own kind alone, and prints a row.
 fn row(
     class: &str,
-    each: impl Iterator<Item = (LoopKind, (OneLoop, Vec<Complex>, Vec<f64>))>,
+    each: impl Iterator<Item = (LoopKind, Asked)>,
     of: Points,
     mechanism: &[LoopKind],
     show: bool,
 ) {
     let (mut recovered, mut all, mut times) = (0, 0, Vec::new());
-    for (case, (kind, (linkage, points, crank_deg))) in each.enumerate() {
+    for (case, (kind, asked)) in each.enumerate() {
         let own = [kind];
-        let (found, error, ms) =
-            search(&points, &crank_deg, of, if mechanism.is_empty() { &own } else { mechanism }, 1);
+        let (found, error, ms) = search(&asked, of, if mechanism.is_empty() { &own } else { mechanism }, 1);
         let is_it = error < RECOVERED && found == Some(kind);
         all += 1;
         recovered += usize::from(is_it);
         times.push(ms);
         if show && !is_it {
-            println!("  {case}: {error:.2e} in {ms:.0} ms, {linkage}");
+            println!("  {case}: {error:.2e} in {ms:.0} ms, {}", asked.linkage);
         }
     }
     times.sort_by(f64::total_cmp);

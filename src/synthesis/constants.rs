@@ -56,6 +56,8 @@ pub mod sliders {
     use super::{Effort, Stopping};
     /// Rounds that run in parallel before any is read.
     pub const BATCH: u64 = 4;
+    /// Batches that run before a search for four-bars, which an exact answer of theirs makes needless.
+    pub const GLIMPSE: u64 = 6;
     /// Shapes drawn in a round, the part of them whose crank turns fully, those fitted for a few steps, and to convergence.
     pub const DRAWS: usize = 240;
     pub const TURNING: f64 = 0.6;
@@ -63,6 +65,11 @@ pub mod sliders {
     pub const LONG: usize = 2;
     pub const SHORT_FIT: Effort = Effort::of(15, 2);
     pub const LONG_FIT: Effort = Effort::of(200, 12);
+    /// Of a motion: sets of four poses whose slider is taken in a round, and lines that are drawn.
+    pub const FOURS: usize = 6;
+    pub const ACROSS: usize = 6;
+    /// Batches of families of exact answers.
+    pub const FAMILY_BATCHES: u64 = 6;
     /// Candidates fitted on to the last digit at the end, at least, and the effort of each.
     pub const LEAST_POLISHED: usize = 8;
     pub const POLISH: Effort = Effort::of(1500, 40);
@@ -89,6 +96,10 @@ pub mod plan {
     pub const RELAXED_SHARE: u64 = 2;
     /// One part in this many of the evaluations for differential evolution goes to the polish of its best.
     pub const POLISH_SHARE: u64 = 5;
+    /// Where several kinds are searched for: the evaluations of a first look for an exact four-bar, and one part in this many
+    /// of the evaluations for one at linkages with a slider. `benches/sliders`, mixed.
+    pub const GLIMPSE: u64 = 1500;
+    pub const GLIMPSE_SHARE: u64 = 4;
     /// Number of the other candidates found around a far target's own centre that are brought back to the target.
     pub const FAR_OTHERS: usize = 32;
     /// The part of the patience for the reduced form of prescribed timing, before rounds in the physical parameters.

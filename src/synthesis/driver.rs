@@ -65,13 +65,6 @@ impl Found {
         }
     }
 
-    /// Adds the results of the next search, if it ran.
-    pub(super) fn extend_by(&mut self, next: Option<Found>) {
-        if let Some(next) = next {
-            self.add(next);
-        }
-    }
-
     /// Adds the results of the next search.
     pub(super) fn add(&mut self, next: Found) {
         self.candidates.extend(next.candidates);

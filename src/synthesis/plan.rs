@@ -5,18 +5,20 @@
 //! nothing is acceptable, `auto` searches without one of the requirements in turn (`relaxed`), then by differential
 //! evolution for a feasible design, and polishes the results. The population searches alone run without a polish.
 
-use super::constants::plan::{FAR_OTHERS, LOCAL_SHARE, POLISH_SHARE, RELAXED_SHARE};
+use super::constants::plan::{FAR_OTHERS, GLIMPSE, GLIMPSE_SHARE, LOCAL_SHARE, POLISH_SHARE, RELAXED_SHARE};
 use super::driver::{Allowance, Found};
+use super::family::freedom;
 use super::frame::{Frame, in_frame};
 use super::multistart::{LONG_FIT, fit_and_judge, polish};
 use super::polish::{improve, reserve};
 use super::population::{self, Population};
-use super::{Context, Progress, SearchOutcome, continuation, local, relaxed, sliders};
+use super::sliders::Sliders;
+use super::{Context, Progress, SearchOutcome, continuation, local, relaxed};
 use crate::judge::assess::{assess, assess_again};
-use crate::judge::rank::{divided, searched};
+use crate::judge::rank::{divided, exact_cost, searched};
 use crate::mechanism::{Complex, LoopKind};
 use crate::numbers::optimise::population::PopulationError;
-use crate::record::{Candidate, RELAXED, Reason};
+use crate::record::{Candidate, Evaluations, RELAXED, Reason};
 use crate::task::forms::start::Start;
 use crate::task::spec::{Method, Objective};
 use crate::task::{AngleOffset, Problem};
@@ -53,44 +55,100 @@ pub fn approximate(context: Context<'_>) -> Result<SearchOutcome, PopulationErro
     if design.is_of_four_bars() {
         return four_bars(context);
     }
+    let limit = context.problem.spec().solve.evaluations;
+    let Some(mut sliders) = Sliders::of(context, &design.mechanism) else { return four_bars(context) };
     if !design.searches(LoopKind::FourBar) {
-        return Ok(with_sliders(context, None));
+        let allowance = Allowance { limit, patience: limit };
+        return Ok(ranked(context, sliders.search(context, allowance)));
+    }
+    let (exact, spent) = glimpse(context, &mut sliders)?;
+    if let Some(exact) = exact {
+        return Ok(exact);
     }
     // Half of the budget at most, so that the others have their turn where no four-bar is acceptable.
+    let mut found = four_bars_within(context, (limit / 2).max(1))?;
+    found.evaluations += spent;
+    Ok(beside(context, found, sliders))
+}
+
+/// Looks for an exact answer of any kind with little effort for each, where one is enough; `None` if there is none. Also
+/// returns the evaluations of its search for four-bars, which the one that follows repeats.
+fn glimpse(
+    context: Context<'_>,
+    sliders: &mut Sliders<'_>,
+) -> Result<(Option<SearchOutcome>, Evaluations), PopulationError> {
+    let solve = &context.problem.spec().solve;
+    if !is_one_enough(context.problem) || solve.evaluations < GLIMPSE_SHARE * GLIMPSE {
+        return Ok((None, Evaluations::default()));
+    }
+    // Its checkpoints would be taken for those of the whole search.
+    let four_bars = four_bars_within(Context { keeper: None, ..context }, GLIMPSE)?;
+    let spent = four_bars.evaluations;
+    if is_exact(context.problem, &four_bars.candidates) {
+        return Ok((Some(four_bars), spent));
+    }
+    let found = sliders.glimpse(context, solve.evaluations / GLIMPSE_SHARE);
+    let exact = found.map(|mut found| {
+        found.evaluations += spent;
+        ranked(context, found)
+    });
+    Ok((exact, spent))
+}
+
+/// Returns whether one exact answer ends the search: where one is asked for, unless it is one of a family, of which the best
+/// transmitting one is wanted.
+fn is_one_enough(problem: &Problem) -> bool {
+    problem.spec().solve.candidates <= 1 && freedom(problem) == 0
+}
+
+/// Returns whether one of the candidates is accepted and exact.
+fn is_exact(problem: &Problem, candidates: &[Candidate]) -> bool {
+    candidates.iter().any(|c| c.accepted && searched(problem, c) <= exact_cost(problem))
+}
+
+/// Searches for four-bars with at most so many evaluations.
+fn four_bars_within(context: Context<'_>, evaluations: u64) -> Result<SearchOutcome, PopulationError> {
     let mut spec = context.problem.spec().clone();
-    spec.solve.evaluations = (spec.solve.evaluations / 2).max(1);
-    let found = match context.problem.with(spec) {
-        Ok(halved) => four_bars(context.of(&halved))?,
-        Err(_) => four_bars(context)?,
-    };
-    Ok(with_sliders(context, Some(found)))
+    spec.solve.evaluations = evaluations;
+    match context.problem.with(spec) {
+        Ok(within) => four_bars(context.of(&within)),
+        Err(_) => four_bars(context),
+    }
 }
 
 /// Searches for linkages with a slider with the evaluations that a search for four-bars has left, and ranks all together.
-fn with_sliders(context: Context<'_>, four_bars: Option<SearchOutcome>) -> SearchOutcome {
+fn beside(context: Context<'_>, four_bars: SearchOutcome, sliders: Sliders<'_>) -> SearchOutcome {
     let problem = context.problem;
-    let (limit, kinds) = (problem.spec().solve.evaluations, &problem.spec().design.mechanism);
-    let mut found = four_bars.map_or_else(Found::nothing, |outcome| Found {
-        candidates: outcome.candidates.into_iter().chain(outcome.others).collect(),
-        evaluations: outcome.evaluations,
-        reason: outcome.reason,
-        used: outcome.used,
-        repeats: outcome.repeats,
-    });
-    let limit = limit.saturating_sub(found.evaluations.objective);
-    let allowance = Allowance { limit, patience: limit };
-    if !context.stopped() && limit > 0 {
-        let best = |found: &Found| {
-            let accepted = found.candidates.iter().filter(|c| c.accepted);
-            accepted.map(|c| searched(problem, c)).min_by(f64::total_cmp).unwrap_or(f64::INFINITY)
-        };
-        let before = (best(&found), found.repeats, found.reason);
-        found.extend_by(sliders::search(context, kinds, allowance));
-        // The repeats are those of the best answer.
-        if best(&found) >= before.0 {
-            (found.repeats, found.reason) = (before.1, before.2);
-        }
+    let limit = problem.spec().solve.evaluations.saturating_sub(four_bars.evaluations.objective);
+    let mut found = Found {
+        candidates: four_bars.candidates.into_iter().chain(four_bars.others).collect(),
+        evaluations: four_bars.evaluations,
+        reason: four_bars.reason,
+        used: four_bars.used,
+        repeats: four_bars.repeats,
+    };
+    let best = |found: &Found| {
+        let accepted = found.candidates.iter().filter(|c| c.accepted);
+        accepted.map(|c| searched(problem, c)).min_by(f64::total_cmp).unwrap_or(f64::INFINITY)
+    };
+    let before = (best(&found), found.repeats, found.reason);
+    let is_enough = is_one_enough(problem) && is_exact(problem, &found.candidates);
+    let next = if is_enough || context.stopped() || limit == 0 {
+        sliders.found(context.problem)
+    } else {
+        sliders.search(context, Allowance { limit, patience: limit })
+    };
+    found.add(next);
+    // The repeats are those of the best answer.
+    if best(&found) >= before.0 {
+        (found.repeats, found.reason) = (before.1, before.2);
     }
+    ranked(context, found)
+}
+
+/// Returns the outcome of a search with its candidates ranked and divided into those that are listed and the others.
+fn ranked(context: Context<'_>, found: Found) -> SearchOutcome {
+    let problem = context.problem;
     let Found { candidates, evaluations, reason, used, repeats } = found;
     let reason = context.stop_reason().unwrap_or(reason);
     let (candidates, others) = divided(problem, candidates, problem.spec().solve.candidates);

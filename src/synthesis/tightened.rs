@@ -4,9 +4,10 @@
 use super::constants::tightened::{EVALUATIONS, FINISH, HOPELESS};
 use super::multistart::{Effort, judged, polish_until};
 use super::polish::{finish, reserve};
-use super::{Context, plan};
+use super::{Context, plan, sliders};
 use crate::judge::assess::assess_again;
 use crate::judge::warm::start_at;
+use crate::mechanism::LoopKind;
 use crate::record::{Axis, Candidate, Figures};
 use crate::task::Problem;
 use crate::task::spec::{Method, Objective};
@@ -129,8 +130,14 @@ pub(super) fn fitted(
     if evaluations == 0 || context.stopped() {
         return out;
     }
-    let Some(start) = start_at(tight, from) else { return out };
     let within = context.of(tight).silent();
+    if from.linkage.kind() != LoopKind::FourBar {
+        let effort = (effort, evaluations.min(EVALUATIONS), enough);
+        let (end, evaluations) = sliders::refit(within, from, effort);
+        let candidate = end.and_then(|end| assess_again(context.problem, &end));
+        return Tightened { candidate, evaluations };
+    }
+    let Some(start) = start_at(tight, from) else { return out };
     let fit = polish_until(within, start, effort, evaluations.min(EVALUATIONS), enough);
     out.evaluations = fit.evaluations;
     let Some(mut end) = fit.end else { return out };

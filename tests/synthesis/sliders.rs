@@ -111,6 +111,46 @@ fn curves_of_both_kinds_are_found_again_closed_open_and_timed() {
     }
 }
 
+/// A problem file of poses of a linkage's coupler, without the angle of those in `without`.
+fn motion(linkage: &OneLoop, angles: &[f64], without: &[usize], more: &str) -> String {
+    let pose = |(j, angle): (usize, &f64)| {
+        let at = linkage.joints_with(*angle, linkage.assembly()).expect("it closes");
+        let ([x, y], deg) = (xy(at.joints.coupler_point), (at.coupler.arg() + 0.4).to_degrees());
+        if without.contains(&j) { format!("[{x:?}, {y:?}]") } else { format!("[{x:?}, {y:?}, {deg:?}]") }
+    };
+    let poses: Vec<String> = angles.iter().enumerate().map(pose).collect();
+    format!("format = 1\n[task.motion]\nposes = [{}]\n{more}", poses.join(", "))
+}
+
+#[test]
+fn motions_of_both_kinds_are_found_again_free_timed_and_mixed() {
+    let angles: Vec<f64> = (0..8).map(|j| 0.3 + 0.35 * f64::from(j)).collect();
+    let degrees: Vec<String> = angles.iter().map(|a| format!("{:?}", (a - 0.3).to_degrees())).collect();
+    for (linkage, kind) in [(slider_crank(), "slider-crank"), (inverted(), "inverted-slider-crank")] {
+        let design = format!("[design]\nmechanism = \"{kind}\"\n[solve]\ncandidates = 1\nadvice = false\n");
+        let timing = format!("[task.motion.timing]\ncrank_deg = [{}]\n{design}", degrees.join(", "));
+        let texts = [
+            motion(&linkage, &angles, &[], &design),
+            motion(&linkage, &angles, &[2, 5], &design),
+            motion(&linkage, &angles, &[], &timing),
+        ];
+        for text in texts {
+            let record = solved(parse(&text).spec);
+            let best = &record.candidates[0];
+            let angle = best.error.angle.as_ref().expect("the body's angles");
+            assert!(best.accepted && best.error.rms_over_size < 1e-11, "{kind}: {}", best.error.rms);
+            assert!(angle.max_deg < 1e-8, "{kind}: {}", angle.max_deg);
+            assert_eq!(best.linkage.kind().name(), kind);
+            assert_closed(best, &record.problem.resolved.task.points, 5.0);
+            // The frame is the angle from the coupler to the body's x axis, up to half a turn of an inverted coupler.
+            let apart = (best.frame_deg.expect("a frame").to_radians() - 0.4).sin().abs();
+            assert!(apart < 1e-9, "{kind}: {apart}");
+            assert!(verify(&record).is_ok_and(|found| found.is_empty()));
+            assert!(report_html(&record, 0).contains(kind));
+        }
+    }
+}
+
 #[test]
 fn kinds_are_ranked_together_and_the_stride_is_drawn_by_a_slider_crank() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/examples/walking-stride-slider.toml");

@@ -42,7 +42,7 @@ fn kinds_of(raw: &RawDesign) -> Vec<LoopKind> {
     if kinds == [LoopKind::FourBar] { Vec::new() } else { kinds }
 }
 
-/// Refuses an empty list of kinds, and kinds with a slider where they are not searched for: for motions and functions, with
+/// Refuses an empty list of kinds, and kinds with a slider where they are not searched for: for functions, with exact targets, with
 /// free crank angles among prescribed ones, by other methods than least squares, and for the largest deviation.
 pub(super) fn of_kinds(
     toml: &TomlText<'_>,
@@ -70,8 +70,10 @@ pub(super) fn of_kinds(
     let Some(slider) = kinds.iter().find(|kind| **kind != LoopKind::FourBar) else { return Ok(()) };
     let is_partly_timed = task.timing.as_ref().is_some_and(|timing| !timing.free.is_empty());
     let of_populations = matches!(solve.method, Method::Genetic | Method::DifferentialEvolution);
-    let why = if task.kind() != TaskKind::Path {
-        format!("\"{slider}\" is searched for paths alone, and this is a {}", task.kind().name())
+    let why = if task.kind() == TaskKind::Function {
+        format!("\"{slider}\" is searched for paths and motions, and this is a function")
+    } else if task.tolerance.iter().flatten().any(|tolerance| *tolerance == 0.0) {
+        format!("\"{slider}\" is not searched for with exact targets")
     } else if is_partly_timed {
         format!("\"{slider}\" is not searched for with free crank angles among prescribed ones")
     } else if of_populations || solve.method == Method::Continuation {

@@ -177,7 +177,7 @@ pub(crate) struct RawTiming {
 #[schemars(rename = "Design")]
 pub(crate) struct RawDesign {
     /// The kinds of linkages to search for, ranked together: one name or a list of four-bar (default), slider-crank and
-    /// inverted-slider-crank. Kinds with a slider take paths.
+    /// inverted-slider-crank. Kinds with a slider take paths and motions.
     pub mechanism: Option<OneOrMore<LoopKind>>,
     /// The fixed pivot of the crank: [x, y], each a number or [min, max]; where silent, within 5 sizes of the target.
     #[serde(rename = "A")]

@@ -59,11 +59,8 @@ pub(super) const PLAYER: [&str; 8] = [
     include_str!("player/player.mjs"),
 ];
 /// The modules of the report alone: drawings of sliders, the body of a motion, the page.
-const REPORT: [&str; 3] = [
-    include_str!("player/slider_stage.mjs"),
-    include_str!("player/body.mjs"),
-    include_str!("report.mjs"),
-];
+const REPORT: [&str; 3] =
+    [include_str!("player/slider_stage.mjs"), include_str!("player/body.mjs"), include_str!("report.mjs")];
 /// The style sheet of the player, with its colours.
 pub(super) const PLAYER_STYLE: &str = include_str!("player/player.css");
 

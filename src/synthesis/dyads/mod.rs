@@ -7,10 +7,10 @@
 //!
 //! | poses | dyads | function |
 //! |---|---|---|
-//! | 3 | one for each pin, one for each pivot | [`through_three_from_pin`], [`through_three_from_pivot`] |
+//! | 3 | one for each pin, one for each pivot; one slider along each line | [`through_three_from_pin`], [`through_three_from_pivot`], [`pin_on_line_across`] |
 //! | 4 | a curve of them; one slider of each kind | [`through_four_curve`], [`pin_on_line`], [`line_over_pivot`] |
 //! | 5 | 0, 2 or 4 | [`through_five`] |
-//! | more | near ones | [`nearest_in_kernel`], [`circle_minima`], [`circle_fit`], [`through_random_five`], [`pin_on_line`], [`line_over_pivot`] |
+//! | more | near ones | [`nearest_in_kernel`], [`circle_minima`], [`circle_fit`], [`through_random_five`], [`pin_on_line`], [`line_over_pivot`], [`pin_on_line_across`] |
 //!
 //! | module | holds |
 //! |---|---|
@@ -56,5 +56,5 @@ pub use kernel::{nearest_in_kernel, through_five, through_random_five};
 pub use line::{best_from_pivot, through_four_on_line};
 pub use map::{CircleMap, circle_minima};
 pub use pair::{Pair, pair};
-pub use slider::{line_over_pivot, pin_on_line};
+pub use slider::{line_over_pivot, pin_on_line, pin_on_line_across};
 pub use three::{through_three_from_pin, through_three_from_pivot};

@@ -11,8 +11,8 @@
 //! RP dyad.
 
 use super::scale::Scale;
-use crate::mechanism::{Complex, Dyad, Pose};
-use nalgebra::{Dyn, OMatrix, U2, U3, Vector2};
+use crate::mechanism::{Complex, Dyad, Pose, dot};
+use nalgebra::{DVector, Dyn, OMatrix, SVD, U2, U3, Vector2};
 
 /// Least ratio of singular values that count: of the columns of w and h, and of the two columns that they leave.
 const RANK: f64 = 1e-12;
@@ -32,24 +32,56 @@ pub fn line_over_pivot(poses: &[Pose]) -> Option<Dyad> {
     pin_on_line(&from_body).map(|dyad| dyad.inverse())
 }
 
+/// Returns the PR dyad with a line of this unit normal and the least sum of squared distances of its pin from it; `None` for
+/// fewer than three poses, which one such dyad meets exactly, or if it is not unique.
+pub fn pin_on_line_across(poses: &[Pose], normal: Complex) -> Option<Dyad> {
+    let scale = Scale::of(poses).filter(|_| poses.len() >= 3)?;
+    let scaled = scale.poses(poses);
+    let fitted = Fitted::of(&scaled)?;
+    let along = DVector::from_iterator(scaled.len(), scaled.iter().map(|pose| dot(normal, pose.position)));
+    Some(scale.back(fitted.dyad(normal, &along)?))
+}
+
+/// The columns of w and h with their decomposition.
+struct Fitted {
+    svd: SVD<f64, Dyn, U3>,
+    /// The mean direction, which the columns of w leave out.
+    mean: Complex,
+}
+
+impl Fitted {
+    /// Decomposes the columns of poses; `None` if w and h are not unique.
+    fn of(poses: &[Pose]) -> Option<Fitted> {
+        let mean = poses.iter().map(|pose| pose.direction).sum::<Complex>() / poses.len() as f64;
+        let columns: OMatrix<f64, Dyn, U3> = OMatrix::<f64, Dyn, U3>::from_fn(poses.len(), |j, column| {
+            let turn = poses[j].direction - mean;
+            [turn.re, -turn.im, 1.0][column]
+        });
+        let svd = columns.svd(true, true);
+        let largest = svd.singular_values.max();
+        svd.singular_values.iter().all(|&value| value > RANK * largest).then_some(Fitted { svd, mean })
+    }
+
+    /// Returns the best dyad with a line of a unit normal, along which the positions lie at `along`.
+    fn dyad(&self, normal: Complex, along: &DVector<f64>) -> Option<Dyad> {
+        let fit = self.svd.solve(&-along, 0.0).ok()?;
+        let w = Complex::new(fit[0], fit[1]);
+        // <n, P> + Re((Q - mean) w) + constant = 0
+        let distance = -fit[2] + (self.mean * w).re;
+        let dyad = Dyad::PR { pin: w * normal, normal, distance };
+        dyad.is_finite().then_some(dyad)
+    }
+}
+
 /// Returns the best PR dyad of poses of size one.
 fn slider(poses: &[Pose]) -> Option<Dyad> {
     let count = poses.len();
-    let mean = poses.iter().map(|pose| pose.direction).sum::<Complex>() / count as f64;
-    let fitted: OMatrix<f64, Dyn, U3> = OMatrix::<f64, Dyn, U3>::from_fn(count, |j, column| {
-        let turn = poses[j].direction - mean;
-        [turn.re, -turn.im, 1.0][column]
-    });
+    let fitted = Fitted::of(poses)?;
     let left: OMatrix<f64, Dyn, U2> = OMatrix::<f64, Dyn, U2>::from_fn(count, |j, column| {
         let Complex { re, im } = poses[j].position;
         [re, im][column]
     });
-    let svd = fitted.clone().svd(true, true);
-    let largest = svd.singular_values.max();
-    let basis = svd.u.as_ref()?;
-    if !svd.singular_values.iter().all(|&value| value > RANK * largest) {
-        return None;
-    }
+    let basis = fitted.svd.u.as_ref()?;
     let beyond = &left - basis * (basis.transpose() * &left);
     let form = beyond.svd(false, true);
     let (values, axes) = (&form.singular_values, form.v_t.as_ref()?);
@@ -62,12 +94,7 @@ fn slider(poses: &[Pose]) -> Option<Dyad> {
     let normal = Complex::new(axes[(row, 0)], axes[(row, 1)]);
     let normal = normal / normal.norm();
     let along = &left * Vector2::new(normal.re, normal.im);
-    let fit = svd.solve(&-along, 0.0).ok()?;
-    let w = Complex::new(fit[0], fit[1]);
-    // <n, P> + Re((Q - mean) w) + constant = 0
-    let distance = -fit[2] + (mean * w).re;
-    let dyad = Dyad::PR { pin: w * normal, normal, distance };
-    dyad.is_finite().then_some(dyad)
+    fitted.dyad(normal, &along)
 }
 
 #[cfg(test)]
@@ -108,6 +135,22 @@ mod tests {
                 let dyad = dyad.expect("a slider");
                 assert!(error(&dyad, &poses) < 1e-13, "case {case}: {dyad:?}, {:e}", error(&dyad, &poses));
             }
+        }
+    }
+
+    #[test]
+    fn three_poses_have_a_slider_along_every_line() {
+        let draws = &mut stream(31, 0);
+        for _ in 0..50 {
+            let normal = Complex::from_polar(1.0, uniform(draws, -PI, PI));
+            let poses = random_poses(draws, 3);
+            let dyad = pin_on_line_across(&poses, normal).expect("a slider");
+            assert!(error(&dyad, &poses) < 1e-12, "{dyad:?}, {:e}", error(&dyad, &poses));
+            // Of many poses none is better than the best of all normals.
+            let poses = random_poses(draws, 7);
+            let sum_sq = |dyad: &Dyad| poses.iter().map(|pose| dyad.residual(pose).powi(2)).sum::<f64>();
+            let across = pin_on_line_across(&poses, normal).expect("a slider");
+            assert!(sum_sq(&across) >= (1.0 - 1e-9) * sum_sq(&pin_on_line(&poses).expect("a slider")));
         }
     }
 

@@ -9,6 +9,7 @@
 use crate::mechanism::{AssemblyMode, Circuit, Complex, InputArc, LoopKind};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::synthesis::atlas::{EVEN, Even, ON_ARC, OnArc, TRACED, Traced, arc_misfits, fraction};
+use crate::task::forms::slider::fit::BodyAngles;
 use crate::task::forms::slider::shape::{Closure, OFFSET, SliderShape, Unknowns};
 use crate::task::forms::torus::Positions;
 use crate::task::{AngleOffset, Problem, Timing};
@@ -40,6 +41,8 @@ pub(super) struct Target {
     is_closed: bool,
     even: Option<Even>,
     on_arc: Option<OnArc>,
+    /// The angles of a motion's body.
+    pub(super) body: Option<BodyAngles>,
 }
 
 impl Target {
@@ -48,6 +51,9 @@ impl Target {
         let (centre, size) = (task.centre(), task.size());
         let points: Vec<Complex> = task.points().iter().map(|p| (p - centre) / size).collect();
         let is_closed = task.closed() || task.repeats_first();
+        let body = task
+            .body()
+            .map(|body| BodyAngles { angles: body.angles.clone(), weight: body.angle_weight / size });
         let mut along = vec![0.0];
         for w in points.windows(2) {
             along.push(along[along.len() - 1] + (w[1] - w[0]).norm());
@@ -58,7 +64,9 @@ impl Target {
         }
         along.iter_mut().for_each(|s| *s /= whole);
         let distinct = if task.repeats_first() { points.len() - 1 } else { points.len() };
-        let even = Traced::of(points[..distinct].to_vec()).filter(|_| is_closed);
+        // A motion starts from its poses.
+        let is_path = body.is_none();
+        let even = if is_path && is_closed { Traced::of(points[..distinct].to_vec()) } else { None };
         let on_arc = || {
             let at = |m: usize| {
                 let s = m as f64 / (ON_ARC - 1) as f64;
@@ -71,13 +79,14 @@ impl Target {
         };
         Target {
             even: even.and_then(|traced| Even::of(&traced.even())),
-            on_arc: if is_closed { None } else { on_arc() },
+            on_arc: if is_closed || !is_path { None } else { on_arc() },
             weights: task.weights().to_vec(),
             points,
             centre,
             size,
             along,
             is_closed,
+            body,
         }
     }
 }
@@ -240,7 +249,7 @@ pub(super) fn free(
     let turn = scale / scale.norm();
     let start = Start {
         kind,
-        x: drawn.shape.carried(scale, shift).unknowns(0.0),
+        x: drawn.shape.carried(scale, shift).unknowns(0.0, 0.0),
         positions: positions.into_iter().map(|[e, u]| [e * turn, u * turn]).collect(),
         assembly: AssemblyMode::Plus,
         direction: laid.direction,
@@ -288,7 +297,7 @@ pub(super) fn prescribed(
     let Linear { pivot, crank, coupler, misfit } = linear(target, &positions)?;
     let scale = crank / shape.crank;
     let turned = crank / crank.norm();
-    let mut x = shape.carried(scale, pivot).unknowns(0.0);
+    let mut x = shape.carried(scale, pivot).unknowns(0.0, 0.0);
     let z = coupler / turned;
     (x[OFFSET - 2], x[OFFSET - 1]) = (z.re, z.im);
     if *offset == AngleOffset::Free {

@@ -1,4 +1,4 @@
-//! The fit of a linkage with a slider to the points of a path.
+//! The fit of a linkage with a slider to the points of a path, or to the places and angles of a motion.
 //!
 //! *Free timing.* A position is a pair of unit vectors (e_j, u_j), crank and coupler, on the curve G(e, u) = 0 of the
 //! closure; as with four-bars ([`crate::task::forms::torus`]), with G_phi, G_w its derivatives by both angles and
@@ -15,17 +15,25 @@
 //! ```text
 //! dP/dx_k = direct_k - i Z u G_k/G_w,     dP/dphi = i a e - i Z u G_phi/G_w
 //! ```
+//!
+//! In a motion a target has a third row, W (theta_j - arg u_j - beta): the error of the body's angle times the length W that a
+//! radian counts like, with the frame beta as an unknown. It is zero for a target without an angle. With the turn of u:
+//!
+//! ```text
+//! free         d(arg u) = -G_phi/sqrt(n2) along the curve,  -G_w/n2 G_k by the unknowns
+//! prescribed   d(arg u) = -G_k/G_w by the unknowns,  -G_phi/G_w by the crank's angle
+//! ```
 
 use super::limits::Limited;
-use super::shape::{Closure, Miss, OFFSET, SHAPE, SliderShape, UNKNOWNS, Unknowns};
+use super::shape::{Closure, FRAME, Miss, OFFSET, SHAPE, SliderShape, UNKNOWNS, Unknowns};
 use crate::mechanism::effort::computed;
-use crate::mechanism::four_bar::mobility::ways_round;
+use crate::mechanism::four_bar::mobility::{ways_round, wrapped};
 use crate::mechanism::{AssemblyMode, Complex, LoopKind, turned, xy};
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
 };
 use crate::task::AngleOffset;
-use crate::task::forms::torus::{Positions, gaps_along, joined};
+use crate::task::forms::torus::{ANGLE_ROW, Positions, gaps_along, joined};
 
 /// Most Newton steps that bring a position back to its curve; each squares the miss.
 const RETURN_STEPS: usize = 12;
@@ -41,15 +49,34 @@ pub enum Angles {
     Prescribed(Vec<Complex>, AngleOffset, AssemblyMode),
 }
 
-/// A path and the limits of a kind of linkage, in units of the target's size around its centre.
+/// The angles of a motion's body at its targets.
 #[derive(Clone, Debug)]
-pub struct SliderFit<'a> {
+pub struct BodyAngles {
+    /// The angle at each target, in radians; `None`: only the place counts there.
+    pub angles: Vec<Option<f64>>,
+    /// W, the length that an error of one radian counts like.
+    pub weight: f64,
+}
+
+impl BodyAngles {
+    /// Returns the residual W (theta - arg u - beta) at a target, the angle within half a turn; zero if it has no angle.
+    fn residual(&self, j: usize, u: Complex, frame: f64) -> f64 {
+        self.angles[j].map_or(0.0, |angle| self.weight * wrapped(angle - u.arg() - frame))
+    }
+}
+
+/// A path or a motion and the limits of a kind of linkage, in units of the target's size around its centre; R rows a target,
+/// 2 of a path and 3 of a motion.
+#[derive(Clone, Debug)]
+pub struct SliderFit<'a, const R: usize> {
     /// The kind.
     pub kind: LoopKind,
     /// The points.
     pub points: &'a [Complex],
     /// Their weights.
     pub weights: &'a [f64],
+    /// The angles of a motion's body.
+    pub body: Option<&'a BodyAngles>,
     /// The crank angles.
     pub angles: Angles,
     /// The limits.
@@ -60,7 +87,7 @@ pub struct SliderFit<'a> {
     pub ends_meet: bool,
 }
 
-impl SliderFit<'_> {
+impl<const R: usize> SliderFit<'_, R> {
     /// Returns the positions at the prescribed crank angles; `None` if the loop is open at one.
     pub fn prescribed(&self, x: &Unknowns, shape: &SliderShape) -> Option<Positions> {
         let Angles::Prescribed(phases, offset, assembly) = &self.angles else { return None };
@@ -87,12 +114,6 @@ impl SliderFit<'_> {
         matches!(self.angles, Angles::Free)
     }
 
-    /// Brings positions to the curves of a linkage; `false` if one does not get there.
-    pub fn settle(shape: &SliderShape, positions: &mut Positions) -> bool {
-        computed(RETURN_STEPS * positions.len());
-        positions.iter_mut().all(|position| settled(shape, position))
-    }
-
     /// Returns the row of a limit with its derivatives.
     fn row(
         &self,
@@ -102,6 +123,7 @@ impl SliderFit<'_> {
     ) -> ConstraintRow<UNKNOWNS> {
         let mut gradient = [0.0; UNKNOWNS];
         gradient[..SHAPE].copy_from_slice(&limit.by_shape);
+        gradient[FRAME] = limit.by_frame;
         let mut own = [None; MOST_OWN];
         if let Some((j, [by_crank, by_coupler])) = limit.at {
             let miss = shape.miss(state[j]);
@@ -127,6 +149,12 @@ impl SliderFit<'_> {
         }
         ConstraintRow { value: limit.value, gradient, own }
     }
+}
+
+/// Brings positions to the curves of a linkage; `false` if one does not get there.
+pub fn settle(shape: &SliderShape, positions: &mut Positions) -> bool {
+    computed(RETURN_STEPS * positions.len());
+    positions.iter_mut().all(|position| settled(shape, position))
 }
 
 /// Returns the angle that prescribed increments are added to.
@@ -206,7 +234,7 @@ fn tangent_of(miss: &Miss) -> Option<[f64; 2]> {
     (length > 0.0).then(|| [miss.by_coupler / length, -miss.by_crank / length])
 }
 
-impl BlockLeastSquares<UNKNOWNS> for SliderFit<'_> {
+impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
     /// The positions; of prescribed crank angles they follow from the unknowns and are empty.
     type State = Positions;
 
@@ -224,8 +252,13 @@ impl BlockLeastSquares<UNKNOWNS> for SliderFit<'_> {
         let given = if self.is_free() { None } else { Some(self.prescribed(x, &shape)?) };
         let state = given.as_ref().unwrap_or(state);
         let each = state.iter().zip(self.points).zip(self.weights);
-        let cost: f64 =
+        let mut cost: f64 =
             each.map(|((at, target), weight)| weight * (target - shape.coupler_point(*at)).norm_sqr()).sum();
+        if let Some(body) = self.body {
+            for (j, ([_, u], weight)) in state.iter().zip(self.weights).enumerate() {
+                cost += weight * body.residual(j, *u, x[FRAME]).powi(2);
+            }
+        }
         cost.is_finite().then_some(cost)
     }
 
@@ -233,7 +266,7 @@ impl BlockLeastSquares<UNKNOWNS> for SliderFit<'_> {
         &self,
         x: &Unknowns,
         state: &Positions,
-        each: &mut dyn FnMut(&PointBlock<UNKNOWNS>),
+        each: &mut dyn FnMut(&PointBlock<UNKNOWNS, R>),
     ) -> bool {
         let Some(shape) = SliderShape::of(self.kind, x) else { return false };
         computed(self.points.len());
@@ -246,13 +279,13 @@ impl BlockLeastSquares<UNKNOWNS> for SliderFit<'_> {
         };
         let state = given.as_ref().unwrap_or(state);
         let zero = Complex::new(0.0, 0.0);
-        for ((position, target), weight) in state.iter().zip(self.points).zip(self.weights) {
+        for (j, ((position, target), weight)) in state.iter().zip(self.points).zip(self.weights).enumerate() {
             let [e, u] = *position;
             let miss = shape.miss(*position);
             let (crank_turn, coupler_turn) = (turned(e) * shape.crank, turned(u) * shape.offset);
             let direct = [Complex::new(1.0, 0.0), Complex::i(), e, zero, zero, zero, u, turned(u)];
-            // What a change of the miss does to P.
-            let (back, tangent) = match &self.angles {
+            // What a change of the miss does to P and to the coupler's angle.
+            let (back, turn_back, tangent, turn_along) = match &self.angles {
                 Angles::Free => {
                     let n2 = miss.by_crank * miss.by_crank + miss.by_coupler * miss.by_coupler;
                     if n2 == 0.0 {
@@ -260,16 +293,23 @@ impl BlockLeastSquares<UNKNOWNS> for SliderFit<'_> {
                     }
                     let back = (crank_turn * miss.by_crank + coupler_turn * miss.by_coupler) / n2;
                     let along = crank_turn * miss.by_coupler - coupler_turn * miss.by_crank;
-                    (back, along / n2.sqrt() * -self.forward())
+                    let forward = self.forward() / n2.sqrt();
+                    (back, miss.by_coupler / n2, along * -forward, miss.by_crank * forward)
                 }
                 Angles::Prescribed(..) => {
                     if miss.by_coupler == 0.0 {
                         return false;
                     }
-                    (coupler_turn / miss.by_coupler, zero)
+                    (coupler_turn / miss.by_coupler, 1.0 / miss.by_coupler, zero, 0.0)
                 }
             };
-            let mut jacobian = [[0.0; UNKNOWNS]; 2];
+            let mut block = PointBlock {
+                residual: [0.0; R],
+                jacobian: [[0.0; UNKNOWNS]; R],
+                tangent: [0.0; R],
+                weight: *weight,
+            };
+            let jacobian = &mut block.jacobian;
             for (k, (direct, by)) in direct.into_iter().zip(miss.by_shape).enumerate() {
                 let column = back * by - direct;
                 (jacobian[0][k], jacobian[1][k]) = (column.re, column.im);
@@ -279,12 +319,22 @@ impl BlockLeastSquares<UNKNOWNS> for SliderFit<'_> {
                 add_turn(&mut jacobian[0], by_turn.re, &shape, *offset);
                 add_turn(&mut jacobian[1], by_turn.im, &shape, *offset);
             }
-            each(&PointBlock {
-                residual: xy(target - shape.coupler_point(*position)),
-                jacobian,
-                tangent: xy(tangent),
-                weight: *weight,
-            });
+            block.residual[..2].copy_from_slice(&xy(target - shape.coupler_point(*position)));
+            block.tangent[..2].copy_from_slice(&xy(tangent));
+            if let Some(body) = self.body.filter(|body| body.angles[j].is_some()) {
+                let length = body.weight;
+                block.residual[ANGLE_ROW] = body.residual(j, u, x[FRAME]);
+                block.tangent[ANGLE_ROW] = length * turn_along;
+                let row = &mut block.jacobian[ANGLE_ROW];
+                for (out, by) in row.iter_mut().zip(miss.by_shape) {
+                    *out = length * turn_back * by;
+                }
+                row[FRAME] = -length;
+                if let Angles::Prescribed(_, offset, _) = &self.angles {
+                    add_turn(row, length * turn_back * miss.by_crank, &shape, *offset);
+                }
+            }
+            each(&block);
         }
         true
     }
@@ -310,7 +360,7 @@ impl BlockLeastSquares<UNKNOWNS> for SliderFit<'_> {
                 turn_by(&mut position[1], forward * tau * by_u);
             }
         }
-        SliderFit::settle(&to, out)
+        settle(&to, out)
     }
 
     fn gaps(&self, x: &Unknowns, state: &Positions, gaps: &mut Vec<f64>) -> bool {
@@ -330,7 +380,7 @@ impl BlockLeastSquares<UNKNOWNS> for SliderFit<'_> {
         let Some(shape) = SliderShape::of(self.kind, x) else { return };
         let given = if self.is_free() { None } else { self.prescribed(x, &shape) };
         let at = given.as_ref().unwrap_or(state);
-        self.limits.each(&shape, at, self.points.len(), &mut |bar| {
+        self.limits.each(&shape, x[FRAME], at, self.points.len(), &mut |bar| {
             each(bar.value, &|| self.row(&bar, &shape, at));
         });
     }

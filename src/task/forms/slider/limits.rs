@@ -10,24 +10,34 @@
 //! Otherwise the same at each point: k b -+ (Im(C conj s) - q) >= 0, k |B - C| -+ h >= 0; and where one branch is required,
 //! t1 <u, s> b >= 0 or t1 <B - C, u> >= 0 there.
 
-use super::shape::{Closure, OFFSET, SHAPE, SliderShape, UNKNOWNS};
+use super::regions::Regions;
+use super::shape::{Closure, FRAME, OFFSET, SHAPE, SliderShape, UNKNOWNS};
 use crate::mechanism::{AssemblyMode, Complex, LoopKind, cross, dot, turned};
 use crate::task::spec::{DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, Limits, TransmissionOver};
-use crate::task::{Problem, region::Region};
+use crate::task::{Link, Problem, region::Region};
 use std::f64::consts::PI;
 
 /// The margin, in sizes of the target, inside a limit at which a fit aims.
-const MARGIN: f64 = 2e-9;
+pub(super) const MARGIN: f64 = 2e-9;
 
 /// An inequality: its value, which is at least zero where it holds, and its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct Bar {
     /// The value.
     pub value: f64,
-    /// Its derivatives by the unknowns, with the positions held.
+    /// Its derivatives by the unknowns of the linkage, with the positions held.
     pub by_shape: [f64; SHAPE],
+    /// Its derivative by the frame of the body.
+    pub by_frame: f64,
     /// The point on whose position it depends, with its derivatives by the angles of crank and coupler there.
     pub at: Option<(usize, [f64; 2])>,
+}
+
+impl Bar {
+    /// Returns an inequality that depends on the unknowns of the linkage alone.
+    pub(super) fn still(value: f64, by_shape: [f64; SHAPE]) -> Bar {
+        Bar { value, by_shape, by_frame: 0.0, at: None }
+    }
 }
 
 /// The limits of a fit, in units of the target's size around its centre.
@@ -49,6 +59,7 @@ pub struct Limited {
     one_branch: bool,
     /// Middle and half widths of the box that the line passes, if one is given.
     line: Option<[Complex; 2]>,
+    regions: Regions,
 }
 
 fn clipped(limits: Option<Limits>, default: [f64; 2], shift: f64, size: f64) -> (f64, f64) {
@@ -99,6 +110,9 @@ impl Limited {
         if !problem.offset_is_free() {
             bounds[OFFSET] = (0.0, 0.0);
         }
+        if !problem.task().body().is_some_and(|body| matches!(body.link, Link::Coupler)) {
+            bounds[FRAME] = (0.0, 0.0);
+        }
         let must_turn = problem.has_to_turn_on();
         Limited {
             bounds,
@@ -109,6 +123,7 @@ impl Limited {
             link_ratio: Some(require.link_ratio_max).filter(|ratio| ratio.is_finite()),
             longest,
             one_branch: !problem.branch_any(),
+            regions: Regions::of(require, centre, size),
             line: design.line_point.map(|[x, y]| {
                 let low = (Complex::new(x.0, y.0) - centre) / size;
                 let high = (Complex::new(x.1, y.1) - centre) / size;
@@ -134,17 +149,12 @@ impl Limited {
         Limited { turns: turns || self.must_turn, ..self.clone() }
     }
 
-    /// Returns the violation of the limits: the sum of what is lacking, a length.
-    pub fn lack(&self, shape: &SliderShape, positions: &[[Complex; 2]]) -> f64 {
-        let mut lack = 0.0;
-        self.each(shape, positions, positions.len(), &mut |bar| lack += (-bar.value).max(0.0));
-        lack
-    }
-
-    /// Passes every inequality to `each`, always the same number and in the same order for `points` points.
+    /// Passes every inequality to `each`, always the same number and in the same order for `points` points; `frame` is that of
+    /// a motion's body.
     pub fn each(
         &self,
         shape: &SliderShape,
+        frame: f64,
         positions: &[[Complex; 2]],
         points: usize,
         each: &mut dyn FnMut(Bar),
@@ -157,7 +167,7 @@ impl Limited {
             for j in 0..points {
                 match positions.get(j) {
                     Some(position) => transmission(shape, cosine, (j, *position), each),
-                    None => (0..2).for_each(|_| each(Bar { value: 0.0, by_shape: [0.0; SHAPE], at: None })),
+                    None => (0..2).for_each(|_| each(Bar::still(0.0, [0.0; SHAPE]))),
                 }
             }
         }
@@ -166,11 +176,12 @@ impl Limited {
             for j in 0..points {
                 each(match (positions.get(j), first) {
                     (Some(position), Some(first)) => branch(shape, first, (j, *position)),
-                    _ => Bar { value: 0.0, by_shape: [0.0; SHAPE], at: None },
+                    _ => Bar::still(0.0, [0.0; SHAPE]),
                 });
             }
         }
         self.lengths(shape, each);
+        self.regions.each(shape, frame, each);
         if let (Some([middle, half]), Closure::Line { height, direction: s, .. }) = (self.line, shape.closure)
         {
             // The box reaches so far across the line, with its derivative by the line's angle.
@@ -181,13 +192,12 @@ impl Limited {
                 let mut by_shape = [0.0; SHAPE];
                 by_shape[4] = side;
                 by_shape[5] = by_reach - side * by_away;
-                each(Bar { value: reach - side * away, by_shape, at: None });
+                each(Bar::still(reach - side * away, by_shape));
             }
         }
     }
 
     fn lengths(&self, shape: &SliderShape, each: &mut dyn FnMut(Bar)) {
-        let bar = |value: f64, by_shape: [f64; SHAPE]| Bar { value, by_shape, at: None };
         // The other link of the ratio, with its derivatives.
         let (other, by_other) = match shape.closure {
             Closure::Line { coupler, .. } => (coupler, [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]),
@@ -201,10 +211,10 @@ impl Limited {
         if let Some(ratio) = self.link_ratio {
             let mut by = by_other.map(|by| ratio * by);
             by[2] -= 1.0;
-            each(bar(ratio * other - shape.crank - MARGIN, by));
+            each(Bar::still(ratio * other - shape.crank - MARGIN, by));
             let mut by = by_other.map(|by| -by);
             by[2] += ratio;
-            each(bar(ratio * shape.crank - other - MARGIN, by));
+            each(Bar::still(ratio * shape.crank - other - MARGIN, by));
         }
         if let Some(longest) = self.longest {
             let away = |from: f64| {
@@ -213,13 +223,13 @@ impl Limited {
                 (longest - length - MARGIN, [z.re / length, z.im / length])
             };
             let (value, [x, y]) = away(0.0);
-            each(bar(value, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -x, -y]));
+            each(Bar::still(value, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -x, -y]));
             match shape.closure {
                 Closure::Line { coupler, .. } => {
                     let (value, [x, y]) = away(coupler);
-                    each(bar(value, [0.0, 0.0, 0.0, x, 0.0, 0.0, -x, -y]));
+                    each(Bar::still(value, [0.0, 0.0, 0.0, x, 0.0, 0.0, -x, -y]));
                 }
-                Closure::Block { .. } => each(bar(longest - other - MARGIN, by_other.map(|by| -by))),
+                Closure::Block { .. } => each(Bar::still(longest - other - MARGIN, by_other.map(|by| -by))),
             }
         }
     }
@@ -244,7 +254,7 @@ fn full_turn(shape: &SliderShape, k: f64, each: &mut dyn FnMut(Bar)) {
                 (far * (g - shape.crank) - side * offset, by)
             }
         };
-        each(Bar { value: value - MARGIN, by_shape, at: None });
+        each(Bar::still(value - MARGIN, by_shape));
     }
 }
 
@@ -267,7 +277,7 @@ fn transmission(shape: &SliderShape, k: f64, (j, [e, _]): (usize, [Complex; 2]),
                 (k * length - side * offset, by, -shape.crank * dot(turned(e), v))
             }
         };
-        each(Bar { value: value - MARGIN, by_shape, at: Some((j, [by_crank, 0.0])) });
+        each(Bar { at: Some((j, [by_crank, 0.0])), ..Bar::still(value - MARGIN, by_shape) });
     }
 }
 
@@ -286,9 +296,6 @@ fn branch(shape: &SliderShape, assembly: AssemblyMode, (j, [e, u]): (usize, [Com
             (dot(v, u), by, [-shape.crank * dot(turned(e), u), dot(v, turned(u))])
         }
     };
-    Bar {
-        value: sign * value - MARGIN,
-        by_shape: by_shape.map(|by| sign * by),
-        at: Some((j, by_angles.map(|by| sign * by))),
-    }
+    let at = Some((j, by_angles.map(|by| sign * by)));
+    Bar { at, ..Bar::still(sign * value - MARGIN, by_shape.map(|by| sign * by)) }
 }

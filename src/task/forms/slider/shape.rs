@@ -6,13 +6,15 @@ use crate::mechanism::{
 
 /// The number of unknowns of a linkage with a slider.
 pub const SHAPE: usize = 8;
-/// The unknowns of the fit: those of the linkage and the offset of prescribed crank angles.
-pub const UNKNOWNS: usize = SHAPE + 1;
+/// The unknowns of the fit: those of the linkage, the offset of prescribed crank angles and the frame of the body.
+pub const UNKNOWNS: usize = SHAPE + 2;
 /// The place of the offset of prescribed crank angles among the unknowns.
 pub const OFFSET: usize = SHAPE;
+/// The place of the frame of a motion's body, the angle from the coupler's direction to its x axis, among the unknowns.
+pub const FRAME: usize = SHAPE + 1;
 
-/// The unknowns. Ax, Ay, a first and Zx, Zy last; between them b, q and the line's angle of a slider-crank, whose line is
-/// Im(p conj s) = q, or Bx, By and h of an inverted one.
+/// The unknowns: Ax, Ay, a; then b, q and the line's angle of a slider-crank, whose line is Im(p conj s) = q, or Bx, By and h
+/// of an inverted one; Zx, Zy; the offset and the frame.
 pub type Unknowns = [f64; UNKNOWNS];
 
 /// The closure of a kind with its parameters.
@@ -65,7 +67,7 @@ pub struct Miss {
 impl SliderShape {
     /// Returns the linkage of a kind in its unknowns; `None` of a four-bar, and without positive lengths.
     pub fn of(kind: LoopKind, x: &Unknowns) -> Option<SliderShape> {
-        let [ax, ay, crank, one, two, three, zx, zy, _] = *x;
+        let [ax, ay, crank, one, two, three, zx, zy, ..] = *x;
         let closure = match kind {
             LoopKind::FourBar => return None,
             LoopKind::SliderCrank => {
@@ -101,14 +103,14 @@ impl SliderShape {
         })
     }
 
-    /// Returns its unknowns, with an offset of prescribed crank angles.
-    pub fn unknowns(&self, offset: f64) -> Unknowns {
+    /// Returns its unknowns, with an offset of prescribed crank angles and the frame of a body.
+    pub fn unknowns(&self, offset: f64, frame: f64) -> Unknowns {
         let (a, z) = (self.crank_pivot, self.offset);
         let [one, two, three] = match self.closure {
             Closure::Line { coupler, height, direction } => [coupler, height, direction.arg()],
             Closure::Block { pivot, offset } => [pivot.re, pivot.im, offset],
         };
-        [a.re, a.im, self.crank, one, two, three, z.re, z.im, offset]
+        [a.re, a.im, self.crank, one, two, three, z.re, z.im, offset, frame]
     }
 
     /// Returns the image p -> shift + scale p, where `scale` turns too.

@@ -1,11 +1,12 @@
 //! Derivatives against differences, and the closure against the position in closed form.
 
-use super::fit::{Angles, SliderFit};
+use super::fit::{Angles, BodyAngles, SliderFit};
 use super::limits::Limited;
 use super::shape::{SliderShape, Unknowns};
 use crate::mechanism::{AssemblyMode, Complex, LoopKind};
 use crate::numbers::arithmetic::streams::{stream, uniform};
 use crate::numbers::optimise::levenberg_marquardt::derivative_error;
+use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, Limits, RequireSpec};
 use crate::task::{AngleOffset, Problem};
 
@@ -24,6 +25,7 @@ fn drawn(kind: LoopKind, case: u64) -> (Unknowns, SliderShape) {
             in_range(-1.0, 2.0),
             in_range(-1.0, 1.0),
             in_range(-1.0, 1.0),
+            in_range(-3.0, 3.0),
         ],
         _ => [
             in_range(-0.2, 0.2),
@@ -35,6 +37,7 @@ fn drawn(kind: LoopKind, case: u64) -> (Unknowns, SliderShape) {
             in_range(-1.0, 2.0),
             in_range(-1.0, 1.0),
             in_range(-1.0, 1.0),
+            in_range(-3.0, 3.0),
         ],
     };
     (x, SliderShape::of(kind, &x).expect("lengths are positive"))
@@ -45,6 +48,8 @@ fn limits(kind: LoopKind, turns: bool) -> Limited {
         transmission_deg_min: Some(20.0),
         link_ratio_max: 9.0,
         longest_max: Some(11.0),
+        pivots_in: Some(Region::Polygon(vec![[-2.0, -2.0], [3.0, -1.5], [2.0, 2.0]])),
+        pins_in: Some(Region::Box([-2.0, -1.0, 1.0, 2.0])),
         ..RequireSpec::default()
     };
     let points: Vec<[f64; 2]> = (0..8).map(|j| [f64::from(j) * 0.3, 0.2 * f64::from(j * j)]).collect();
@@ -76,26 +81,42 @@ fn derivatives_agree_with_differences() {
                 turned[8] = 0.1;
             }
             let assembly = AssemblyMode::of(sign);
+            let angle = |j: usize| (j != 2).then(|| positions[j][1].arg() + x[9] + 0.2 * j as f64);
+            let body = BodyAngles { angles: (0..6).map(angle).collect(), weight: 0.7 };
             for angles in [Angles::Free, Angles::Prescribed(phases, offset, assembly)] {
                 let is_free = matches!(angles, Angles::Free);
-                let fit = SliderFit {
+                let state = if is_free { positions.clone() } else { Vec::new() };
+                let path = SliderFit::<2> {
                     kind,
                     points: &points,
                     weights: &weights,
+                    body: None,
+                    angles: angles.clone(),
+                    limits: &limits,
+                    sense: 1.0,
+                    ends_meet: false,
+                };
+                let motion = SliderFit::<3> {
+                    kind,
+                    points: &points,
+                    weights: &weights,
+                    body: Some(&body),
                     angles,
                     limits: &limits,
                     sense: 1.0,
                     ends_meet: false,
                 };
-                let steps = [1e-6; 9];
-                let state = if is_free { positions.clone() } else { Vec::new() };
-                let Some(error) =
-                    derivative_error(&fit, &turned, &state, &steps, if is_free { 1e-6 } else { 0.0 })
-                else {
+                let along = if is_free { 1e-6 } else { 0.0 };
+                let errors = [
+                    derivative_error(&path, &turned, &state, &[1e-6; 10], along),
+                    derivative_error(&motion, &turned, &state, &[1e-6; 10], along),
+                ];
+                let [Some(of_path), Some(of_motion)] = errors else {
                     // A crank from the ground may stand where the loop is open.
                     assert!(offset == AngleOffset::Ground && !is_free);
                     continue;
                 };
+                let error = of_path.max(of_motion);
                 assert!(error < 2e-8, "{kind} {case} free {is_free} {offset:?}: {error}");
             }
         }

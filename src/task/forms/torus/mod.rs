@@ -44,7 +44,7 @@ use std::f64::consts::TAU;
 pub type Positions = Vec<[Complex; 2]>;
 
 /// The row of the body's angle among those of a target.
-pub(super) const ANGLE_ROW: usize = 2;
+pub(in crate::task::forms) const ANGLE_ROW: usize = 2;
 
 /// Least squares over the design vector and the points' positions, with R rows a target: 2 of a path, 3 of a motion.
 #[derive(Clone, Debug)]
