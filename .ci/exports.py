@@ -1,8 +1,9 @@
 """Exported files read by other people's programs: exports.py dxf|stl|openscad PROGRAM FOLDER.
 
-The linkages: two shipped ones and four whose plates are awkward (P on the line C-D, P on C, coincident pivots,
-P right of C-D in inches), each also with a kerf and other sizes. What is expected is computed here, from the JSON
-export alone.
+The linkages: two shipped four-bars and four whose plates are awkward (P on the line C-D, P on C, coincident pivots,
+P right of C-D in inches); of either kind of slider a shipped one and two others (the rail slants, crank and slider are in
+line, P lies in the slot, the block is behind the crank pin). Each also with a kerf and other sizes. What is expected is
+computed here, from the JSON export alone; the slot from 36,000 positions of a turn.
 """
 
 import cmath
@@ -35,6 +36,28 @@ def linkages():
         yield path
 
 
+SLIDERS = {
+    "slider-slant": ("slider_crank", "in", {"A": [1, 2], "a": 1, "b": 3.5, "line_point": [0, 3], "line_deg": 130,
+                     "coupler_x": -1, "coupler_y": -1.5, "t1": -1}),
+    "slider-in-line": ("slider_crank", "mm", {"A": [0, 0], "a": 20, "b": 60, "line_point": [5, 0], "line_deg": 0,
+                       "coupler_x": 30, "coupler_y": 0, "t1": 1}),
+    "inverted-behind": ("inverted_slider_crank", "mm", {"A": [0, 0], "B": [50, 40], "a": 15, "offset": -12,
+                        "coupler_x": 20, "coupler_y": -30, "t1": -1}),
+    "inverted-straight": ("inverted_slider_crank", "cm", {"A": [0, 0], "B": [6, 0], "a": 2, "offset": 0,
+                          "coupler_x": 10, "coupler_y": 4, "t1": 1}),
+}
+
+
+def sliders():
+    for name in ("slider-crank", "inverted-slider-crank"):
+        yield Path("problems/linkages") / f"{name}.toml"
+    for name, (table, unit, keys) in SLIDERS.items():
+        path = FOLDER / f"{name}.toml"
+        lines = "".join(f"{key} = {value}\n" for key, value in keys.items())
+        path.write_text(f'format = 1\nunit = "{unit}"\n[{table}]\n{lines}')
+        yield path
+
+
 def export(linkage, form, **settings):
     out = FOLDER / f"{linkage.stem}.{form}"
     arguments = [PROGRAM, "export", str(linkage), "--format", form, "--out", str(out)]
@@ -44,18 +67,50 @@ def export(linkage, form, **settings):
     return out
 
 
+MM = {"mm": 1, "cm": 10, "m": 1000, "in": 25.4, None: 1}
+
+
+def hull(points):
+    """The corners of the convex hull, counter-clockwise (Andrew's monotone chain)."""
+    cross = lambda o, p, q: ((p - o).conjugate() * (q - o)).imag
+    order = sorted(set(points), key=lambda z: (z.real, z.imag))
+    chains = []
+    for run in (order, order[::-1]):
+        chain = []
+        for p in run:
+            while len(chain) > 1 and cross(chain[-2], chain[-1], p) <= 1e-9:
+                chain.pop()
+            chain.append(p)
+        chains.append(chain[:-1])
+    return chains[0] + chains[1]
+
+
 class Linkage:
     """A linkage in millimetres, its joints and the holes of its plates."""
 
+    bars = [("A", "B"), ("A", "C"), ("C", "D"), ("B", "D"), ("C", "P"), ("D", "P")]
+
+    def slot(self, link, hole, margin):
+        """The two ends of a plate's slot; a four-bar has none."""
+        return None
+
     def __init__(self, path):
         data = json.loads(export(path, "json").read_text())
-        mm = {"mm": 1, "cm": 10, "m": 1000, "in": 25.4, None: 1}[data.get("unit")]
+        mm = MM[data.get("unit")]
         given = data["linkage"]
         self.A, self.B = (complex(*given[key]) * mm for key in "AB")
         self.a, self.b, self.c, self.d, self.e = (given[key] * mm for key in "abcde")
         self.t1, self.t2 = given["t1"], given["t2"]
         along = (self.b**2 + self.d**2 - self.e**2) / (2 * self.b)
         self.P = complex(along, self.t2 * math.sqrt(max(0, self.d**2 - along**2)))
+
+    def reaches(self, crank_deg):
+        C = self.A + cmath.rect(self.a, math.radians(crank_deg))
+        return abs(self.b - self.c) < abs(self.B - C) < self.b + self.c
+
+    def can_be_at(self, p):
+        """Every point of the curve is where some closed loop puts P: |CP| = d about the crank's circle."""
+        return abs(self.a - self.d) - 1e-6 <= abs(p - self.A) <= self.a + self.d + 1e-6
 
     def joints(self, crank_deg):
         C = self.A + cmath.rect(self.a, math.radians(crank_deg))
@@ -65,7 +120,7 @@ class Linkage:
         D = C + V / s * complex(along, self.t1 * math.sqrt(self.b**2 - along**2))
         return {"A": self.A, "B": self.B, "C": C, "D": D, "P": C + (D - C) / self.b * self.P}
 
-    def holes(self):
+    def holes(self, hole=0.8, margin=1.1):
         near = lambda holes: [h for i, h in enumerate(holes) if all(abs(h - k) > 1e-6 for k in holes[:i])]
         g = abs(self.B - self.A)
         return {
@@ -75,7 +130,7 @@ class Linkage:
             "follower": [0, self.c],
         }
 
-    def area(self, link, reach, hole):
+    def area(self, link, reach, hole, margin=1.1):
         """The rounded hull of the holes, less the holes (Steiner)."""
         holes = [complex(h) for h in self.holes()[link]]
         if len(holes) == 3:
@@ -89,6 +144,97 @@ class Linkage:
         return area + around * reach + math.pi * reach**2 - len(holes) * math.pi * hole**2 / 4
 
 
+class Slider:
+    """A linkage with a slider in millimetres: its joints, and the holes and the slot of its plates."""
+
+    def __init__(self, path):
+        data = json.loads(export(path, "json").read_text())
+        mm, given = MM[data.get("unit")], data["linkage"]
+        self.rail = given["kind"] == "slider-crank"
+        at = lambda key: complex(*given[key]) * mm
+        self.A, self.a, self.t1 = at("A"), given["a"] * mm, given["t1"]
+        self.Z = complex(given["coupler_x"], given["coupler_y"]) * mm
+        if self.rail:
+            self.b, self.Q = given["b"] * mm, at("line_point")
+            self.s = cmath.rect(1, math.radians(given["line_deg"]))
+            self.bars = [("A", "C"), ("C", "D"), ("C", "P"), ("D", "P")]
+        else:
+            self.B, self.h = at("B"), given["offset"] * mm
+            self.bars = [("A", "B"), ("A", "C"), ("C", "P")] + ([("B", "D")] if self.h else [])
+        places = [self.at(k / 100)[1] for k in range(36000)]
+        self.travel = min(places), max(places)
+
+    def at(self, crank_deg):
+        """C, the slider's place and the direction of the coupler."""
+        C = self.A + cmath.rect(self.a, math.radians(crank_deg))
+        if self.rail:
+            q = (C - self.Q) * self.s.conjugate()
+            place = q.real + self.t1 * math.sqrt(self.b**2 - q.imag**2)
+            return C, place, (self.Q + place * self.s - C) / self.b
+        V = self.B - C
+        place = self.t1 * math.sqrt(abs(V) ** 2 - self.h**2)
+        return C, place, V / complex(place, self.h)
+
+    def reaches(self, crank_deg):
+        return True
+
+    def can_be_at(self, p):
+        return abs(self.a - abs(self.Z)) - 1e-6 <= abs(p - self.A) <= self.a + abs(self.Z) + 1e-6
+
+    def joints(self, crank_deg):
+        C, place, u = self.at(crank_deg)
+        D = self.Q + place * self.s if self.rail else C + place * u
+        second = {} if self.rail else {"B": self.B}
+        third = {"D": D}
+        return {"A": self.A, **second, "C": C, **third, "P": C + u * self.Z}
+
+    def half(self, hole, margin):
+        """Half the distance of the guide pins."""
+        return hole + margin if self.rail else max(hole + margin, abs(self.h) / 4)
+
+    def slot(self, link, hole, margin):
+        if link != ("ground" if self.rail else "coupler"):
+            return None
+        more = self.half(hole, margin) + hole / 2
+        origin = (self.Q - self.A) * self.s.conjugate() if self.rail else 0
+        return [origin + self.travel[0] - more, origin + self.travel[1] + more]
+
+    def holes(self, hole=0.8, margin=1.1):
+        half = self.half(hole, margin)
+        if self.rail:
+            return {
+                "ground": [0],
+                "crank": [0, self.a],
+                "coupler": [0, self.b, self.Z],
+                "block": [0, -half, half],
+            }
+        low, high = self.slot("coupler", hole, margin)
+        beside = complex(max(low - self.Z.real, 0, self.Z.real - high), self.Z.imag)
+        return {
+            "ground": [0, abs(self.B - self.A)],
+            "crank": [0, self.a],
+            "coupler": [0] + ([self.Z] if abs(beside) >= 1.5 * hole else []),
+            "block": [1j * self.h, -half, half],
+        }
+
+    def area(self, link, reach, hole, margin=1.1):
+        """The rounded hull of holes, slot and P, less the holes and the slot."""
+        width = hole or 0.8
+        holes, slot = self.holes(width, margin)[link], self.slot(link, width, margin) or []
+        corners = hull([complex(z) for z in holes + slot + ([self.Z] if link == "coupler" else [])])
+        pairs = list(zip(corners, corners[1:] + corners[:1]))
+        area = sum(0.5 * (p.conjugate() * q).imag for p, q in pairs)
+        around = sum(abs(q - p) for p, q in pairs)
+        taken = len(holes) * math.pi * hole**2 / 4
+        if slot:
+            taken += abs(slot[1] - slot[0]) * hole + math.pi * hole**2 / 4
+        return area + around * reach + math.pi * reach**2 - taken
+
+
+def kind_of(path):
+    return Slider if "slider_crank]" in path.read_text() else Linkage
+
+
 def same(x, y, tolerance=1e-9):
     assert abs(x - y) <= tolerance * max(1, abs(x), abs(y)), (x, y)
 
@@ -97,7 +243,7 @@ def check_dxf(path):
     import ezdxf
     from ezdxf import bbox
 
-    linkage = Linkage(path)
+    linkage = kind_of(path)(path)
 
     def read(file):
         document = ezdxf.readfile(file)
@@ -111,43 +257,55 @@ def check_dxf(path):
         return document.modelspace()
 
     # A crank angle that is asked for, so that the joints are known.
-    crank_deg = next(
-        angle for angle in range(0, 360, 7)
-        if abs(linkage.b - linkage.c) < abs(linkage.B - linkage.A - cmath.rect(linkage.a, math.radians(angle)))
-        < linkage.b + linkage.c
-    )
+    crank_deg = next(angle for angle in range(0, 360, 7) if linkage.reaches(angle))
     space = read(export(path, "dxf", crank_deg=crank_deg, hole_mm=0.5))
     joints = linkage.joints(crank_deg)
     circles = [e for e in space.query("CIRCLE") if e.dxf.layer == "JOINTS"]
-    assert len(circles) == 5 and all(e.dxf.radius == 0.25 for e in circles)
-    for circle, at in zip(circles, joints.values()):
+    drawn = {name: at for name, at in joints.items() if name != "D" or not hasattr(linkage, "h")}
+    assert len(circles) == len(drawn) and all(e.dxf.radius == 0.25 for e in circles)
+    for circle, at in zip(circles, drawn.values()):
         same(complex(circle.dxf.center.x, circle.dxf.center.y), at)
     ends = [
         (complex(e.dxf.start.x, e.dxf.start.y), complex(e.dxf.end.x, e.dxf.end.y))
         for e in space.query("LINE[layer=='SKELETON']")
     ]
-    bars = [("A", "B"), ("A", "C"), ("C", "D"), ("B", "D"), ("C", "P"), ("D", "P")]
-    bars = [(joints[p], joints[q]) for p, q in bars if abs(joints[p] - joints[q]) > 1e-9]
+    bars = [(joints[p], joints[q]) for p, q in linkage.bars if abs(joints[p] - joints[q]) > 1e-9]
     assert len(ends) == len(bars)
     for (start, end), (p, q) in zip(ends, bars):
         same(start, p)
         same(end, q)
     curves = space.query("LWPOLYLINE[layer=='CURVE']")
     assert curves and all(e.closed and len(e) > 300 for e in curves)
-    # Every point of the curve is where some closed loop puts P: |CP| = d about the crank's circle.
-    for x, y in (p[:2] for e in curves for p in e.get_points()):
-        reach = abs(complex(x, y) - linkage.A)
-        assert abs(linkage.a - linkage.d) - 1e-6 <= reach <= linkage.a + linkage.d + 1e-6
+    assert all(linkage.can_be_at(complex(*p[:2])) for e in curves for p in e.get_points())
+    if isinstance(linkage, Slider):
+        slot, block = space.query("LWPOLYLINE[layer=='SLIDER']")
+        assert slot.closed and len(slot) == 4 and block.closed and len(block) == 4
+        assert len(space.query("LINE[layer=='SLIDER']")) == 1
 
     for kerf in (0, 0.2):
         hole, margin, gap = 0.8, 1.1, 2.0
         space = read(export(path, "dxf-plates", hole_mm=hole, margin_mm=margin, kerf_mm=kerf, gap_mm=gap))
         boxes = []
-        for link, holes in linkage.holes().items():
-            layer = link.upper()
+        for link, holes in linkage.holes(hole, margin).items():
+            layer, slot = link.upper(), linkage.slot(link, hole, margin)
             contours = space.query(f"LWPOLYLINE[layer=='{layer}']")
             circles = space.query(f"CIRCLE[layer=='{layer}']")
-            assert len(contours) == 1 and contours[0].closed and len(circles) == len(holes), (link, holes)
+            assert len(contours) == 1 + bool(slot) and all(e.closed for e in contours), (link, slot)
+            assert len(circles) == len(holes), (link, holes)
+            if slot:
+                # Two sides and two half circles; its ends lie where the travel of the block puts them.
+                points = list(contours[1].get_points("xyb"))
+                bulges = [bulge for _, _, bulge in points]
+                assert len(points) == 4 and bulges.count(0) == 2
+                assert all(abs(b - 1) < 1e-12 for b in bulges if b)
+                corners = [complex(x, y) for x, y, _ in points]
+                ends = [(p + q) / 2 for p, q, b in zip(corners, corners[1:] + corners[:1], bulges) if b]
+                wide = [abs(p - q) for p, q, b in zip(corners, corners[1:] + corners[:1], bulges) if b]
+                all(same(w, hole - kerf) for w in wide)
+                at = complex(circles[0].dxf.center.x, circles[0].dxf.center.y)
+                told = sorted(abs(end - at) for end in ends)
+                for one, other in zip(told, sorted(abs(end - holes[0]) for end in slot)):
+                    same(one, other, 1e-6)
             centres = [complex(e.dxf.center.x, e.dxf.center.y) for e in circles]
             for circle in circles:
                 same(circle.dxf.radius, (hole - kerf) / 2)
@@ -166,11 +324,11 @@ def check_dxf(path):
                     radius = chord / (2 * math.sin(angle / 2))
                     same(radius, reach, 1e-7)
                     area += 0.5 * radius**2 * (angle - math.sin(angle))
-            same(area, linkage.area(link, reach, 0), 1e-7)
-            boxes.append(bbox.extents(list(contours)))
+            same(area, linkage.area(link, reach, 0), 1e-6)
+            boxes.append(bbox.extents([contours[0]]))
         names = space.query("LWPOLYLINE[layer=='MARK']")
         assert len(names) >= sum(map(len, linkage.holes().values())) and not any(e.closed for e in names)
-        assert {e.dxf.layer for e in space} == {"GROUND", "CRANK", "COUPLER", "FOLLOWER", "MARK"}
+        assert {e.dxf.layer for e in space} == {link.upper() for link in linkage.holes()} | {"MARK"}
         bare = read(export(path, "dxf-plates", hole_mm=hole, margin_mm=margin, kerf_mm=kerf, gap_mm=gap, marks="no"))
         assert len(bare) == len(space) - len(names)
         for i, one in enumerate(boxes):
@@ -183,11 +341,11 @@ def check_dxf(path):
                 assert apart >= gap - 1e-3, apart
 
 
-def bodies(file):
+def bodies(file, links):
     import trimesh
 
     solids = re.split(r"(?m)^solid ", file.read_text())[1:]
-    assert [s.split()[0] for s in solids] == ["ground", "crank", "coupler", "follower"]
+    assert [s.split()[0] for s in solids] == list(links)
     for text in solids:
         one = file.with_suffix(".one.stl")
         one.write_text("solid " + text)
@@ -200,27 +358,28 @@ def sound(mesh):
 
 
 def check_stl(path):
-    linkage = Linkage(path)
+    linkage = kind_of(path)(path)
     for hole, chord in ((0.8, 0.001), (0.5, 0.0002)):
         reach, thickness = hole / 2 + 1.1, 1.5
         file = export(path, "stl", hole_mm=hole, margin_mm=1.1, thickness_mm=thickness, chord_mm=chord)
-        for link, mesh in bodies(file):
+        for link, mesh in bodies(file, linkage.holes()):
             sound(mesh)
-            # A plate with k holes has the Euler number 2 - 2k.
-            assert mesh.euler_number == 2 - 2 * len(linkage.holes()[link]), link
+            # A plate with k holes has the Euler number 2 - 2k; a slot is one, too.
+            slot = linkage.slot(link, hole, 1.1)
+            assert mesh.euler_number == 2 - 2 * (len(linkage.holes(hole)[link]) + bool(slot)), link
             expected = linkage.area(link, reach, hole) * thickness
             edge = (2 * math.pi * (reach + 3 * hole)) * chord * thickness
             assert abs(mesh.volume - expected) <= edge + 1e-5 * expected, (link, mesh.volume, expected)
             assert abs(mesh.bounds[:, 2] - [0, thickness]).max() < 1e-6
     default = export(path, "stl")
-    for _, mesh in bodies(default):
+    for _, mesh in bodies(default, linkage.holes()):
         sound(mesh)
 
 
 def check_openscad(path):
     import trimesh
 
-    linkage = Linkage(path)
+    linkage = kind_of(path)(path)
     hole, margin, thickness, chord = 0.8, 1.1, 1.5, 0.01
     script = export(path, "scad", hole_mm=hole, margin_mm=margin, thickness_mm=thickness, chord_mm=chord)
     expected = sum(linkage.area(link, hole / 2 + margin, hole) for link in linkage.holes()) * thickness
@@ -238,7 +397,7 @@ def check_openscad(path):
 
 CHECK = {"dxf": check_dxf, "stl": check_stl, "openscad": check_openscad}[KIND]
 count = 0
-for path in linkages():
+for path in (*linkages(), *sliders()):
     CHECK(path)
     count += 1
 print(f"{KIND}: {count} linkages, no complaint")

@@ -6,17 +6,18 @@ use crate::app::job::folder::{FolderError, RECORD, read_record};
 use crate::files::diagnostic::Diagnostic;
 use crate::files::linkage_file;
 use crate::files::linkage_file::{AnyLinkageFile, LinkageFile};
+use crate::mechanism::{FourBar, OneLoop};
 use crate::record::{Candidate, Pick, Record};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 /// An input of the export, comparison and report commands.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Given {
+pub enum Given<L = FourBar> {
     /// A result of a run.
     Run(Box<Run>),
     /// A linkage without a run.
-    Linkage(Box<LinkageFile>),
+    Linkage(Box<LinkageFile<L>>),
 }
 
 /// A result of a run, with the choice of its candidates.
@@ -135,6 +136,17 @@ pub enum NotRead {
 pub fn read(argument: &Path) -> Result<Given, NotRead> {
     if is_linkage_file(argument) {
         return Ok(Given::Linkage(Box::new(linkage_file::load(argument)?)));
+    }
+    Ok(Given::Run(Box::new(read_run(argument)?)))
+}
+
+/// As [`read`], with a linkage file of any linkage of one loop.
+///
+/// # Errors
+/// [`NotRead`].
+pub fn read_one_loop(argument: &Path) -> Result<Given<OneLoop>, NotRead> {
+    if is_linkage_file(argument) {
+        return Ok(Given::Linkage(Box::new(linkage_file::load_one_loop(argument)?)));
     }
     Ok(Given::Run(Box::new(read_run(argument)?)))
 }

@@ -8,13 +8,16 @@ use crate::judge::practicality::clearance::PivotDistance;
 use crate::judge::practicality::layers::{Layering, Passing, PinPlate, PlatePair, Stack, clear};
 use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
 use crate::judge::practicality::sweep::Stretch;
-use crate::judge::practicality::{Closest, Joint, Practicality};
-use crate::mechanism::Unit;
-use crate::mechanism::plates::Link;
+use crate::judge::practicality::{Build, Closest, Joint, Practicality};
+use crate::mechanism::plates::{Link, Parts};
+use crate::mechanism::{LoopKind, OneLoop, Unit};
 use crate::task::TaskKind;
 
 /// The number of significant digits of lengths and rates.
 const DIGITS: usize = 3;
+
+/// Counts of dimensions in words.
+const COUNTS: [&str; 10] = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];
 
 /// Returns the whole text, for a standard deviation `tolerance` of each dimension.
 pub fn practicality_text(
@@ -50,7 +53,18 @@ pub fn practicality_text(
     out
 }
 
+const SIMPLE: &str = "The model is simple: a plate with a slot counts as if it were filled, and the guide pins end flush with \
+    their plates; washers or heads that hold the block on its slot need the room beside it.";
+
 const OPEN: &str = "  The loop is open somewhere in the motion: nothing can be said.\n";
+
+/// Returns the place that the slot of a linkage with a slider can run into, in words.
+pub(crate) fn slot_end(linkage: &OneLoop) -> &'static str {
+    match linkage.kind() {
+        LoopKind::InvertedSliderCrank => "the crank pin C, which the block reaches at a toggle",
+        LoopKind::SliderCrank | LoopKind::FourBar => "the crank's pivot A, which the block reaches",
+    }
+}
 
 /// The sentences, with their lengths in a unit.
 pub(super) struct Words {
@@ -82,10 +96,41 @@ impl Words {
             false => format!("crank {}", stretches.join(", ")),
         };
         format!(
-            "Holes {}{motor}, plates {} around them; over {motion}.",
+            "Holes {}{motor}, plates {} around them; over {motion}.{}",
             self.length(2.0 * build.pin_radius),
-            self.length(build.margin())
+            self.length(build.margin()),
+            build.parts(&practicality.sweep).map_or(String::new(), |parts| self.guide(&parts, build))
         )
+    }
+
+    /// Returns the description of the guide of a slider, with a blank before it; nothing of a four-bar.
+    fn guide(&self, parts: &Parts, build: &Build) -> String {
+        let (Some(guide), Some(slot)) = (parts.guide(), parts.slot()) else { return String::new() };
+        let mut text = format!(
+            " The block runs on two pins, E and F, {} apart, in a slot of the {} as wide as a hole and {} long between the \
+             centres of its ends S and T; it travels {}.",
+            self.length(2.0 * guide.half),
+            slot.link.name(),
+            self.length(slot.length()),
+            self.length(guide.travel[1] - guide.travel[0])
+        );
+        if parts.undrilled().is_some() {
+            text.push_str(
+                " P lies in the slot, where no hole has room: what is mounted there bridges the slot.",
+            );
+        }
+        let diameter = |link: Link, joints: &str| match (link, joints.contains('A'), build.motor) {
+            (Link::Ground, true, Some(motor)) => 2.0 * motor.boss_radius,
+            _ => 2.0 * build.pin_radius,
+        };
+        if let Some((link, joints, _)) = parts.hole_in_slot(diameter) {
+            let fault = format!(
+                " The slot runs into the hole at {joints} of the {}: choose a smaller hole and margin, or another linkage.",
+                link.name()
+            );
+            text.push_str(&self.colour.paint(Ink::Bad, &fault));
+        }
+        text
     }
 
     /// Returns the stacking, its obstacles and the plates that pass over ends of pins, one line for each. A pin may have
@@ -93,10 +138,15 @@ impl Words {
     pub(super) fn layers(&self, practicality: &Practicality, layering: &Layering) -> Vec<String> {
         const NO_STACK: &str =
             "No stacking of the four plates works, each in one layer, the ground in one piece.";
-        const ALWAYS: &str = "What always works: the ground on both sides, in five layers: ground, crank, coupler, \
-            follower, ground. The two halves are joined outside of where the links reach.";
-        const JOINED: &str = "Plates that a pin joins (ground-crank, crank-coupler, coupler-follower, follower-ground) \
-            overlap at it and never share a layer.";
+        let last = layering.links[3].name();
+        let always = format!(
+            "What always works: the ground on both sides, in five layers: ground, crank, coupler, {last}, ground. The two \
+             halves are joined outside of where the links reach."
+        );
+        let joined = format!(
+            "Plates that a pin joins (ground-crank, crank-coupler, coupler-{last}, {last}-ground) overlap at it and never \
+             share a layer."
+        );
         let mut out = vec![match &layering.stack {
             Some(stack) => format!("{} layers, from below: {}.", stack.layers.len(), in_layers(stack)),
             None => self.colour.paint(Ink::Bad, NO_STACK),
@@ -111,10 +161,11 @@ impl Words {
             }
             None => {
                 out.extend(layering.crossings().map(|p| self.crossing(p)));
-                out.push(ALWAYS.to_owned());
+                out.push(always);
             }
         }
-        out.push(JOINED.to_owned());
+        out.push(joined);
+        out.extend(layering.links.contains(&Link::Block).then(|| SIMPLE.to_owned()));
         out
     }
 
@@ -198,7 +249,7 @@ impl Words {
         };
         let worst = felt.worst_dimension().name;
         let ink = |d: &Dimension| match d.name {
-            name if name == felt.ground.name => Ink::Faint,
+            "ground" => Ink::Faint,
             name if name == worst => Ink::Strong,
             _ => Ink::Plain,
         };
@@ -208,7 +259,7 @@ impl Words {
             (Right, "most", &|d| (significant(d.worst, DIGITS), ink(d))),
             (Right, at_target, &|d| (d.worst_at.to_string(), ink(d))),
         ];
-        let rows: Vec<&Dimension> = felt.dimensions.iter().chain([&felt.ground]).collect();
+        let rows: Vec<&Dimension> = felt.dimensions.iter().chain(&felt.ground).collect();
         let grid = Grid::of(&rows, if practicality.at_points { &columns } else { &columns[..3] });
         let mut out = indented(&shift(felt, practicality.kind));
         out.push_str(&grid.render(self.colour));
@@ -227,14 +278,19 @@ impl Words {
             false => self.length(value),
         };
         let what = if of_function { "the output" } else { "the path" };
+        let count = COUNTS.get(felt.dimensions.len()).copied().unwrap_or_default();
+        let has = |name: &str| felt.dimensions.iter().any(|d| d.name == name);
         let mut text = format!(
-            "The worst dimension is {worst}. With every dimension off by {} (1 sigma, the nine above independent of \
+            "The worst dimension is {worst}. With every dimension off by {} (1 sigma, the {count} above independent of \
              each other) {what} is off by {} rms, {} where it is most{most} (1 sigma).",
             self.length(tolerance),
             off(tolerance * felt.band),
             off(tolerance * felt.worst)
         );
-        if felt.dimensions.iter().any(|d| d.name == "coupler_x") {
+        if has("rail_from") {
+            text.push_str(" rail_from and rail_to move the rail across itself at the least and at the greatest place of D, the other end held.");
+        }
+        if has("c") && has("coupler_x") {
             text.push_str(" P lies nearly on the line C-D, where d and e hardly say where: coupler_x and coupler_y are P along and across it.");
         }
         if !felt.at_toggles.is_empty() {

@@ -212,6 +212,16 @@ pub(crate) fn circuits_through(
     positions: impl IntoIterator<Item = (f64, AssemblyMode)>,
     samples: usize,
 ) -> Vec<Vec<Joints>> {
+    let circuits = positions_through(linkage, positions, samples);
+    circuits.into_iter().map(|circuit| circuit.into_iter().map(|at| at.joints).collect()).collect()
+}
+
+/// Returns the positions along every circuit that contains one of the positions (crank angle in radians, assembly).
+pub(super) fn positions_through(
+    linkage: impl Into<OneLoop>,
+    positions: impl IntoIterator<Item = (f64, AssemblyMode)>,
+    samples: usize,
+) -> Vec<Vec<LoopJoints>> {
     let linkage = linkage.into();
     let mobility = linkage.mobility();
     let mut seen = Vec::new();
@@ -226,10 +236,10 @@ pub(crate) fn circuits_through(
         }
         seen.push(key);
         let curve = CouplerCurve::through(&linkage, angle, assembly, 8);
-        let joints: Vec<Joints> = (0..samples)
+        let joints: Vec<LoopJoints> = (0..samples)
             .filter_map(|i| {
                 let (angle, assembly) = curve.position_at(TAU * i as f64 / samples as f64);
-                linkage.joints_with(angle, assembly).map(|at| at.joints)
+                linkage.joints_with(angle, assembly)
             })
             .collect();
         if !joints.is_empty() {

@@ -16,4 +16,5 @@ mod random;
 mod referee;
 #[path = "../reference/mod.rs"]
 mod reference;
+mod slider_plates;
 mod sliders;

@@ -2,6 +2,7 @@
 
 mod dxf;
 mod motor;
+mod sliders;
 
 use self::dxf::tags;
 use crate::common::root;
@@ -42,6 +43,7 @@ fn subject(linkage: FourBar, unit: Option<Unit>) -> Subject {
         target: vec![[1.0, 2.0], [3.0, 2.5], [4.0, 1.0]],
         closed: true,
         positions: vec![(0.4, AssemblyMode::Plus)],
+        motion: Vec::new(),
         frame_deg: None,
         carried: None,
         body_deg: Vec::new(),

@@ -5,47 +5,86 @@ use super::result;
 use super::result::Given;
 use super::{Ended, refuse, terminal};
 use crate::files::diagnostic::escaped;
-use crate::judge::practicality::Practicality;
 pub use crate::judge::practicality::{Build, usual_tolerance};
-use crate::mechanism::FourBar;
-use crate::mechanism::Unit;
-use crate::report::practicality::practicality_text;
+use crate::judge::practicality::{Practicality, Sweep};
+use crate::mechanism::{OneLoop, Unit};
+use crate::record::Candidate;
+use crate::report::practicality::{practicality_text, slot_end};
 use crate::report::text::clean;
 use crate::task::Problem;
 
 /// Runs the command.
 pub fn run(options: &Options) -> Result<Ended, Ended> {
-    let made = |linkage: &FourBar, unit: Option<Unit>| {
-        let hole = options.hole.unwrap_or_else(|| Build::usual_hole(linkage, unit));
-        Build::new(hole, options.margin.unwrap_or(hole)).with_motor(options.motor_hole, options.boss_hole)
-    };
-    let (title, linkage, unit, practicality) = match result::read(&options.result)? {
-        Given::Linkage(file) => {
-            let found = Practicality::of_linkage(&file.linkage, made(&file.linkage, file.unit));
-            (clean(&file.name), file.linkage, file.unit, found)
-        }
-        Given::Run(run) => {
-            let chosen = run.one()?;
-            let problem = Problem::new(run.record.problem.resolved.clone()).map_err(refuse)?;
-            let kind = chosen.candidate.linkage.kind();
-            let unit = run.record.problem.unit;
-            let Some(&linkage) = chosen.candidate.linkage.four_bar() else {
-                return Err(refuse(format!(
-                    "{} is a {kind}, and plates and layers are computed for four-bars alone: \
-                     linkwright analyze draws it and prints its motion",
-                    escaped(&chosen.label)
-                )));
-            };
-            let found = Practicality::of_candidate(&problem, chosen.candidate, made(&linkage, unit));
-            (escaped(&chosen.label), linkage, unit, found)
-        }
-    };
-    let Some(practicality) = practicality else {
-        terminal::complain(&format!("{title} cannot be assembled, so there is nothing to build"));
-        return Err(Ended::Bad);
-    };
-    let tolerance = options.tolerance.unwrap_or_else(|| usual_tolerance(&linkage, unit));
-    terminal::answer(&format!("{title}\n  {linkage}\n\n"));
-    terminal::answer(&practicality_text(&practicality, unit, tolerance, terminal::colour()));
+    let given = Subject::of(options)?;
+    let Some(sweep) = &given.sweep else { return Err(nothing(&given.title)) };
+    let usual = || Build::usual_hole_of(sweep, given.unit);
+    let Some(hole) = options.hole.or_else(usual) else { return Err(no_room(&given)) };
+    let build =
+        Build::new(hole, options.margin.unwrap_or(hole)).with_motor(options.motor_hole, options.boss_hole);
+    let Some(practicality) = given.practicality(build) else { return Err(nothing(&given.title)) };
+    let tolerance = options.tolerance.unwrap_or_else(|| usual_tolerance(given.linkage, given.unit));
+    terminal::answer(&format!("{}\n  {}\n\n", given.title, given.linkage));
+    terminal::answer(&practicality_text(&practicality, given.unit, tolerance, terminal::colour()));
     Ok(Ended::Good)
+}
+
+/// The linkage that is to be built.
+struct Subject {
+    title: String,
+    linkage: OneLoop,
+    unit: Option<Unit>,
+    /// The motion over which it is examined; `None` if it cannot be assembled.
+    sweep: Option<Sweep>,
+    /// The candidate of a run, with its problem.
+    run: Option<(Problem, Candidate)>,
+}
+
+impl Subject {
+    fn of(options: &Options) -> Result<Self, Ended> {
+        Ok(match result::read_one_loop(&options.result)? {
+            Given::Linkage(file) => Subject {
+                title: clean(&file.name),
+                linkage: file.linkage,
+                unit: file.unit,
+                sweep: Sweep::of_linkage(file.linkage),
+                run: None,
+            },
+            Given::Run(run) => {
+                let chosen = run.one()?;
+                let problem = Problem::new(run.record.problem.resolved.clone()).map_err(refuse)?;
+                let candidate = chosen.candidate;
+                Subject {
+                    title: escaped(&chosen.label),
+                    linkage: candidate.linkage,
+                    unit: run.record.problem.unit,
+                    sweep: Sweep::of_candidate(&problem, candidate),
+                    run: Some((problem, candidate.clone())),
+                }
+            }
+        })
+    }
+
+    fn practicality(&self, build: Build) -> Option<Practicality> {
+        match &self.run {
+            None => Practicality::of_linkage(self.linkage, build),
+            Some((problem, candidate)) => Practicality::of_candidate(problem, candidate, build),
+        }
+    }
+}
+
+/// Reports a linkage without a position.
+fn nothing(title: &str) -> Ended {
+    terminal::complain(&format!("{title} cannot be assembled, so there is nothing to build"));
+    Ended::Bad
+}
+
+/// Reports a slider whose slot leaves no room for any hole.
+fn no_room(given: &Subject) -> Ended {
+    terminal::complain(&format!(
+        "{}: the slot of its block runs through {}, so there are no plates to build: build a result whose motion keeps \
+         clear of that, or give the holes' diameter with --hole for the rest",
+        given.title,
+        slot_end(&given.linkage)
+    ));
+    Ended::Bad
 }

@@ -7,6 +7,7 @@ use crate::app::inputs;
 pub use crate::app::inputs::{Given, NoCandidate, NotRead, Run, Which, file_of};
 use crate::files::linkage_file::AnyLinkageFile;
 use crate::judge::verify::{Mismatch, verify};
+use crate::mechanism::OneLoop;
 use crate::record::Record;
 use std::path::Path;
 
@@ -33,6 +34,14 @@ impl From<NotRead> for Ended {
 /// [`Ended::Refused`]; the fault has been reported.
 pub fn read(argument: &Path) -> Result<Given, Ended> {
     Ok(inputs::read(argument)?)
+}
+
+/// As [`read`], with a linkage file of any linkage of one loop.
+///
+/// # Errors
+/// [`Ended::Refused`]; the fault has been reported.
+pub fn read_one_loop(argument: &Path) -> Result<Given<OneLoop>, Ended> {
+    Ok(inputs::read_one_loop(argument)?)
 }
 
 /// As [`read`], for a command that needs the record of a run: a linkage file is refused.

@@ -3,7 +3,7 @@
 
 use super::details::DetailsError;
 use crate::files::linkage_file;
-use crate::judge::practicality::{Build, Practicality, usual_tolerance};
+use crate::judge::practicality::{Build, Practicality, Sweep, usual_tolerance};
 use crate::mechanism::Unit;
 use crate::record::{Candidate, Record};
 use crate::report::export::{Format, Settings, Subject, export};
@@ -48,13 +48,13 @@ pub(super) fn layers(record: &Record, candidate: &Candidate, sizes: &Sizes) -> R
     let settings = settings_for(Format::CutList, sizes)?;
     let unit = record.problem.unit.or(settings.unit);
     let problem = Problem::new(record.problem.resolved.clone()).map_err(super::asked::AskError::Task)?;
-    let linkage = candidate.linkage.four_bar().ok_or(DetailsError::OfAnotherKind)?;
     let length = |mm: f64| mm * unit.map_or(1.0, |unit| Unit::Mm.factor_to(unit)) / settings.scale();
-    let hole = settings.hole_mm.map_or_else(|| Build::usual_hole(linkage, unit), length);
+    let usual = || Build::usual_hole_of(&Sweep::of_candidate(&problem, candidate)?, unit);
+    let hole = settings.hole_mm.map(length).or_else(usual).ok_or(DetailsError::NotAssembled)?;
     let build = Build::new(hole, settings.margin_mm.map_or(hole, length))
         .with_motor(settings.motor_hole_mm.map(length), settings.boss_hole_mm.map(length));
     let found = Practicality::of_candidate(&problem, candidate, build).ok_or(DetailsError::NotAssembled)?;
-    Ok(practicality_text(&found, unit, usual_tolerance(linkage, unit), Colour::Never))
+    Ok(practicality_text(&found, unit, usual_tolerance(candidate.linkage, unit), Colour::Never))
 }
 
 /// Returns an archive (zip) of everything that it takes to build a candidate, under names that begin with `name`; with

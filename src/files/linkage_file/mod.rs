@@ -11,8 +11,8 @@ use crate::files::name;
 use crate::files::toml_text::TomlText;
 use crate::files::toml_values::{Count, Number, OnlyTable, XY};
 use crate::mechanism::{
-    AssemblyMode, CouplerSide, FourBar, Linkage, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, OneLoop,
-    Unit, VectorLoop,
+    AssemblyMode, CouplerSide, FourBar, InvertedSliderCrank, Linkage, LinkageError, MAX_MAGNITUDE,
+    NaturalCoordinates, OneLoop, SliderCrank, Unit, VectorLoop,
 };
 use crate::record::Candidate;
 use crate::task::Sense;
@@ -161,16 +161,61 @@ pub fn parse(file_name: &str, text: &str) -> Result<LinkageFile, Box<Diagnostic>
     match linkage {
         Linkage::FourBar(linkage) => Ok(LinkageFile { name, unit, linkage }),
         other => {
-            let toml = TomlText { file: file_name, text: input_text::without_mark(text) };
             let message =
                 format!("{} is not a four-bar, and a four-bar is needed here", kind_in_words(&other));
             let help = "give a linkage file with [linkage] or [vector_loop]";
-            let table = match other {
-                Linkage::SliderCrank(_) => "slider_crank",
-                Linkage::InvertedSliderCrank(_) => "inverted_slider_crank",
-                Linkage::Chain(_) | Linkage::FourBar(_) => "chain",
-            };
-            toml.refuse_key(table, message, help)
+            refuse_kind((file_name, text), &other, message, help)
+        }
+    }
+}
+
+/// Refuses the linkage of a text because of its kind, at its table.
+fn refuse_kind<T>(
+    (file, text): (&str, &str),
+    linkage: &Linkage,
+    message: String,
+    help: &str,
+) -> Result<T, Box<Diagnostic>> {
+    let toml = TomlText { file, text: input_text::without_mark(text) };
+    let table = match linkage {
+        Linkage::SliderCrank(_) => "slider_crank",
+        Linkage::InvertedSliderCrank(_) => "inverted_slider_crank",
+        Linkage::Chain(_) | Linkage::FourBar(_) => "chain",
+    };
+    toml.refuse_key(table, message, help)
+}
+
+/// Reads a file with a linkage of one loop: a four-bar, a slider-crank or an inverted slider-crank, also as the chain that
+/// it is.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_one_loop(path: &Path) -> Result<LinkageFile<OneLoop>, Box<Diagnostic>> {
+    let text = input_text::read(path)?;
+    parse_one_loop(&path.display().to_string(), &text)
+}
+
+/// Reads the linkage of one loop of a text, as [`load_one_loop`] does.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse_one_loop(file_name: &str, text: &str) -> Result<LinkageFile<OneLoop>, Box<Diagnostic>> {
+    let AnyLinkageFile { name, unit, linkage } = parse_any(file_name, text)?;
+    let found = match &linkage {
+        Linkage::FourBar(linkage) => Some(OneLoop::FourBar(*linkage)),
+        Linkage::SliderCrank(linkage) => Some(OneLoop::SliderCrank(*linkage)),
+        Linkage::InvertedSliderCrank(linkage) => Some(OneLoop::InvertedSliderCrank(*linkage)),
+        Linkage::Chain(chain) => SliderCrank::from_chain(chain)
+            .map(OneLoop::SliderCrank)
+            .or_else(|| InvertedSliderCrank::from_chain(chain).map(OneLoop::InvertedSliderCrank)),
+    };
+    match found {
+        Some(linkage) => Ok(LinkageFile { name, unit, linkage }),
+        None => {
+            let message =
+                format!("{} has no plates: they are made of linkages of one loop", kind_in_words(&linkage));
+            let help = "give a linkage file with [linkage], [vector_loop], [slider_crank] or [inverted_slider_crank]";
+            refuse_kind((file_name, text), &linkage, message, help)
         }
     }
 }

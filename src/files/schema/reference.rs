@@ -13,7 +13,8 @@ const LINKAGE_EXAMPLES: &str = r#"
 `linkwright check FILE` reads such a file and says what is wrong with it; `analyze`, `cognates`, `build`, `snap`,
 `export` and `compare --target PROBLEM` take it as their LINKAGE or RESULT, and every result holds its candidates as
 such files (`linkage-1.toml`, ..). A file holds exactly one of `[linkage]`, `[vector_loop]`, `[slider_crank]`,
-`[inverted_slider_crank]` and `[chain]`; the last three are for `check` and `analyze`.
+`[inverted_slider_crank]` and `[chain]`; the last three are for `check` and `analyze`, those with a slider also for `export` and
+`build`.
 
 A four-bar: crank A-C, coupler C-D with the coupler point P, follower B-D.
 

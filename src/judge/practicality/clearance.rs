@@ -2,8 +2,9 @@
 
 use super::closest::{Closest, closest};
 use super::sweep::{Reach, Sweep};
-use crate::mechanism::plates::{Link, Placement, Plate};
-use crate::mechanism::{Complex, FourBar, Joints, Unit, length};
+pub use crate::mechanism::plates::Joint;
+use crate::mechanism::plates::{Guide, Link, Parts, Placement, Plate, Sizes, parts};
+use crate::mechanism::{FourBar, LoopJoints, OneLoop, Unit, length};
 
 /// Radii of the plates and pins of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,83 +72,61 @@ impl Build {
         }
     }
 
-    /// Returns the default diameter of a hole: 4 mm or, if the unit of the lengths is not known, a fortieth of the
-    /// longest link; smaller if two holes of a plate are near each other.
+    /// Returns the parts of a linkage of these sizes for its motion; `None` if a slider's loop is open in the motion.
+    pub fn parts(&self, sweep: &Sweep) -> Option<Parts> {
+        let sizes = Sizes { hole: 2.0 * self.pin_radius, margin: self.margin() };
+        Parts::new(sweep.linkage, sizes, &sweep.stretches)
+    }
+
+    /// Returns the default diameter of a hole of a linkage in motion: as [`Build::usual_hole`] says of a four-bar; with a
+    /// slider smaller where the slot comes near a hole. `None` if the loop of a slider is open in the motion, or its slot
+    /// runs through a hole however small that is.
+    pub fn usual_hole_of(sweep: &Sweep, unit: Option<Unit>) -> Option<f64> {
+        let linkage = &sweep.linkage;
+        if let OneLoop::FourBar(linkage) = linkage {
+            return Some(Build::usual_hole(linkage, unit));
+        }
+        let wanted = wanted_hole(linkage.longest(), unit);
+        let found = parts::largest_hole(linkage, &sweep.stretches, (wanted, 1.0 / HOLE_BESIDE))?;
+        (found > 0.0).then_some(found)
+    }
+
+    /// Returns the default diameter of a hole of a four-bar: 4 mm or, if the unit of the lengths is not known, a fortieth of
+    /// the longest link; smaller if two holes of a plate are near each other.
     pub fn usual_hole(linkage: &FourBar, unit: Option<Unit>) -> f64 {
-        let known = unit.map(|unit| HOLE_MM * Unit::Mm.factor_to(unit));
-        let wanted = known.unwrap_or(HOLE_SHARE * linkage.longest_link());
+        let wanted = wanted_hole(linkage.longest_link(), unit);
         let holes = [linkage.crank_side(), linkage.follower_side()];
         let nearest = linkage.links().into_iter().chain(holes.into_iter().filter(|d| *d > 0.0));
         wanted.min(HOLE_BESIDE * nearest.fold(f64::INFINITY, f64::min))
     }
 }
 
-/// A joint: one of the four pins, each of which joins two plates, or the coupler point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Joint {
-    /// The pin of ground and crank.
-    A,
-    /// The pin of ground and follower.
-    B,
-    /// The pin of crank and coupler.
-    C,
-    /// The pin of coupler and follower.
-    D,
-    /// The coupler point.
-    P,
+/// Returns the default diameter of a hole where there is room for it.
+fn wanted_hole(longest: f64, unit: Option<Unit>) -> f64 {
+    let known = unit.map(|unit| HOLE_MM * Unit::Mm.factor_to(unit));
+    known.unwrap_or(HOLE_SHARE * longest)
 }
 
-impl Joint {
-    /// All five joints.
-    pub const ALL: [Joint; 5] = [Joint::A, Joint::B, Joint::C, Joint::D, Joint::P];
-    /// The four pins.
-    pub const PINS: [Joint; 4] = [Joint::A, Joint::B, Joint::C, Joint::D];
-
-    /// Returns the letter of the joint.
-    pub fn name(self) -> &'static str {
-        ["A", "B", "C", "D", "P"][self as usize]
-    }
-
-    /// Returns the plates that carry the joint: the two that a pin joins, twice the coupler for the coupler point.
-    pub fn joins(self) -> [Link; 2] {
-        match self {
-            Joint::A => [Link::Ground, Link::Crank],
-            Joint::B => [Link::Ground, Link::Follower],
-            Joint::C => [Link::Crank, Link::Coupler],
-            Joint::D => [Link::Coupler, Link::Follower],
-            Joint::P => [Link::Coupler; 2],
-        }
-    }
-
-    /// Returns the position of the joint's centre.
-    pub fn at(self, linkage: &FourBar, joints: &Joints) -> Complex {
-        match self {
-            Joint::A => linkage.crank_pivot(),
-            Joint::B => linkage.follower_pivot(),
-            Joint::C => joints.crank_pin,
-            Joint::D => joints.follower_pin,
-            Joint::P => joints.coupler_point,
-        }
-    }
-
-    /// Returns the bound of the joint's displacement.
-    fn moves(self, reach: &Reach) -> f64 {
-        match self {
-            Joint::A | Joint::B => 0.0,
-            Joint::C => reach.crank_pin,
-            Joint::D => reach.follower_pin,
-            Joint::P => reach.coupler_point,
-        }
+/// Returns the bound of a joint's displacement.
+fn joint_moves(joint: Joint, reach: &Reach, guide: Option<&Guide>) -> f64 {
+    match joint {
+        Joint::A | Joint::B => 0.0,
+        Joint::C => reach.crank_pin,
+        Joint::D => reach.follower_pin,
+        Joint::P => reach.coupler_point,
+        Joint::E | Joint::F => reach.follower_pin + guide.map_or(0.0, |guide| guide.half) * reach.block_chord,
     }
 }
 
-/// Returns the bound of the displacement of any point of a plate's hull: that of the farthest-moving of its holes.
-fn plate_moves(link: Link, reach: &Reach) -> f64 {
-    match link {
+/// Returns the bound of the displacement of any point of a plate's hull: that of the farthest-moving of its corners.
+fn plate_moves(plate: &Plate, reach: &Reach) -> f64 {
+    match plate.link {
         Link::Ground => 0.0,
         Link::Crank => reach.crank_pin,
         Link::Follower => reach.follower_pin,
+        Link::Coupler if plate.slot.is_some() => reach.crank_pin + plate.farthest() * reach.coupler_chord,
         Link::Coupler => reach.coupler(),
+        Link::Block => reach.follower_pin + plate.farthest() * reach.block_chord,
     }
 }
 
@@ -156,60 +135,68 @@ fn plate_moves(link: Link, reach: &Reach) -> f64 {
 pub struct Workpieces<'a> {
     sweep: &'a Sweep,
     build: Build,
+    parts: Parts,
     plates: [Plate; 4],
 }
 
 impl<'a> Workpieces<'a> {
-    /// Builds the plates of a linkage in motion.
-    pub fn new(sweep: &'a Sweep, build: Build) -> Self {
-        let plates = Link::ALL.map(|link| Plate::of(&sweep.linkage, link, build.radius_of(link)));
-        Workpieces { sweep, build, plates }
+    /// Builds the plates of a linkage in motion; `None` if a slider's loop is open in the motion.
+    pub fn new(sweep: &'a Sweep, build: Build) -> Option<Self> {
+        let parts = build.parts(sweep)?;
+        let plates = parts.plates(|link| build.radius_of(link));
+        Some(Workpieces { sweep, build, parts, plates })
+    }
+
+    /// Returns the parts.
+    pub fn parts(&self) -> &Parts {
+        &self.parts
     }
 
     fn plate(&self, link: Link) -> &Plate {
-        &self.plates[link as usize]
+        &self.plates[link.place()]
     }
 
-    fn placement(&self, link: Link, joints: &Joints) -> Placement {
-        self.plate(link).placement(&self.sweep.linkage, joints)
+    fn placement(&self, link: Link, at: &LoopJoints) -> Placement {
+        self.parts.placement(link, at)
     }
 
     /// Computes the distance between two plates at a position, below zero if they overlap.
-    pub fn between_plates_at(&self, one: Link, other: Link, joints: &Joints) -> f64 {
-        let (at, other_at) = (self.placement(one, joints), self.placement(other, joints));
-        self.plate(one).separation(&at, self.plate(other), &other_at)
+    pub fn between_plates_at(&self, one: Link, other: Link, at: impl Into<LoopJoints>) -> f64 {
+        let at = at.into();
+        let (of_one, of_other) = (self.placement(one, &at), self.placement(other, &at));
+        self.plate(one).separation(&of_one, self.plate(other), &of_other)
     }
 
     /// Computes the distance between a pin and a plate at a position, below zero if they overlap.
-    pub fn pin_to_plate_at(&self, pin: Joint, plate: Link, joints: &Joints) -> f64 {
-        let to = pin.at(&self.sweep.linkage, joints);
-        self.plate(plate).distance(&self.placement(plate, joints), to) - self.build.radius_at(pin)
+    pub fn pin_to_plate_at(&self, pin: Joint, plate: Link, at: impl Into<LoopJoints>) -> f64 {
+        let at = at.into();
+        let to = self.parts.joint(pin, &at);
+        self.plate(plate).distance(&self.placement(plate, &at), to) - self.build.radius_at(pin)
     }
 
     /// Computes the least distance between two plates over the motion, below zero if they overlap. `None` if the loop
     /// is open in the motion.
     pub fn between_plates(&self, one: Link, other: Link) -> Option<Closest> {
-        let moves = |reach: &Reach| plate_moves(one, reach) + plate_moves(other, reach);
-        closest(self.sweep, |joints| self.between_plates_at(one, other, joints), moves)
+        let moves =
+            |reach: &Reach| plate_moves(self.plate(one), reach) + plate_moves(self.plate(other), reach);
+        closest(self.sweep, |at| self.between_plates_at(one, other, at), moves)
     }
 
     /// Computes the least distance between a pin and a plate over the motion.
     pub fn pin_to_plate(&self, pin: Joint, plate: Link) -> Option<Closest> {
-        let moves = |reach: &Reach| pin.moves(reach) + plate_moves(plate, reach);
-        closest(self.sweep, |joints| self.pin_to_plate_at(pin, plate, joints), moves)
+        let guide = self.parts.guide();
+        let moves = |reach: &Reach| joint_moves(pin, reach, guide) + plate_moves(self.plate(plate), reach);
+        closest(self.sweep, |at| self.pin_to_plate_at(pin, plate, at), moves)
     }
 
     /// Computes the least distance between the surfaces of two pins over the motion.
     pub fn between_pins(&self, one: Joint, other: Joint) -> Option<Closest> {
-        let apart = |joints: &Joints| distance(&self.sweep.linkage, one, other, joints);
-        let moves = |reach: &Reach| one.moves(reach) + other.moves(reach);
+        let apart = |at: &LoopJoints| length(self.parts.joint(one, at) - self.parts.joint(other, at));
+        let guide = self.parts.guide();
+        let moves = |reach: &Reach| joint_moves(one, reach, guide) + joint_moves(other, reach, guide);
         let radii = self.build.radius_at(one) + self.build.radius_at(other);
-        closest(self.sweep, |joints| apart(joints) - radii, moves)
+        closest(self.sweep, |at| apart(at) - radii, moves)
     }
-}
-
-fn distance(linkage: &FourBar, one: Joint, other: Joint, joints: &Joints) -> f64 {
-    length(one.at(linkage, joints) - other.at(linkage, joints))
 }
 
 /// Two joints and the least distance between them.
@@ -219,19 +206,31 @@ pub struct PivotDistance {
     pub between: [&'static str; 2],
     /// The least distance of their centres over the motion.
     pub closest: Closest,
-    /// Whether one link carries both, so that the distance is constant.
+    /// Whether one link keeps them apart, so that the distance is constant.
     pub fixed: bool,
 }
 
-/// Computes the least distances between the centres of A, B, C, D and P over the motion, nearest first (ties in the
-/// order of the letters). `None` if the loop is open in the motion.
+/// Computes the least distances between the centres of A, B, C, D and P, as many as a linkage has, over the motion, nearest
+/// first (ties in the order of the letters). `None` if the loop is open in the motion.
 pub fn pivot_distances(sweep: &Sweep) -> Option<Vec<PivotDistance>> {
+    let linkage = &sweep.linkage;
+    let (points, pins) = (parts::points(linkage), parts::pins(linkage));
+    let carries = |link: Link, joint: Joint| match joint {
+        Joint::P => link == Link::Coupler,
+        _ => pins.iter().any(|pin| pin.joint == joint && pin.joins.contains(&link)),
+    };
+    let place =
+        |joint: Joint, at: &LoopJoints| parts::joint_at(linkage, joint, at).unwrap_or(at.joints.follower_pin);
     let mut distances = Vec::new();
-    for (i, one) in Joint::ALL.into_iter().enumerate() {
-        for other in Joint::ALL.into_iter().skip(i + 1) {
-            let fixed = one.joins().iter().any(|link| other.joins().contains(link));
-            let apart = |joints: &Joints| distance(&sweep.linkage, one, other, joints);
-            let moves = |reach: &Reach| if fixed { 0.0 } else { one.moves(reach) + other.moves(reach) };
+    for (i, one) in points.iter().copied().enumerate() {
+        for other in points.iter().copied().skip(i + 1) {
+            let links = [Link::Ground, Link::Crank, Link::Coupler, Link::Follower, Link::Block];
+            let fixed = links.into_iter().any(|link| carries(link, one) && carries(link, other));
+            let apart = |at: &LoopJoints| length(place(one, at) - place(other, at));
+            let moves = |reach: &Reach| match fixed {
+                true => 0.0,
+                false => joint_moves(one, reach, None) + joint_moves(other, reach, None),
+            };
             let closest = closest(sweep, apart, moves)?;
             distances.push(PivotDistance { between: [one.name(), other.name()], closest, fixed });
         }

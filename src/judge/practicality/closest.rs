@@ -5,7 +5,7 @@
 //! the best value found is within a margin of it. Nothing between two samples can be missed.
 
 use super::sweep::{Reach, Stretch, Sweep};
-use crate::mechanism::{AssemblyMode, Joints};
+use crate::mechanism::{AssemblyMode, LoopJoints};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -66,7 +66,7 @@ impl Ord for Piece {
 /// the motion, or the motion is empty.
 pub fn closest(
     sweep: &Sweep,
-    measure: impl Fn(&Joints) -> f64,
+    measure: impl Fn(&LoopJoints) -> f64,
     moves: impl Fn(&Reach) -> f64,
 ) -> Option<Closest> {
     let margin = MARGIN * sweep.linkage.longest_link();
@@ -112,15 +112,14 @@ pub fn closest(
 }
 
 /// Refines the best value, by golden section around its crank angle and at the ends of the motion.
-fn refine(sweep: &Sweep, found: &Closest, measure: &impl Fn(&Joints) -> f64) -> Closest {
+fn refine(sweep: &Sweep, found: &Closest, measure: &impl Fn(&LoopJoints) -> f64) -> Closest {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     const ROUNDS: usize = 50;
     /// Half-width of the search interval, radians.
     const AROUND: f64 = 0.02;
     let mut best = *found;
     let mut try_at = |angle: f64, assembly: AssemblyMode| {
-        let value =
-            sweep.linkage.position_with(angle, assembly).joints().map_or(f64::INFINITY, |j| measure(&j));
+        let value = sweep.linkage.joints_with(angle, assembly).map_or(f64::INFINITY, |at| measure(&at));
         if value < best.value {
             best = Closest { value, crank_angle: angle, assembly, bound: value };
         }

@@ -14,6 +14,7 @@
 
 pub mod clearance;
 pub mod closest;
+mod dimensions;
 pub mod layers;
 pub mod sensitivity;
 pub mod sweep;

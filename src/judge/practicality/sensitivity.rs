@@ -16,20 +16,20 @@
 //! Of a function it is not the path that counts but the output: s_jk is then the change of the follower's angle from the
 //! ground line, in degrees, for a unit error of dimension k; where the offset of outputs is free, its mean is set to zero anew.
 //!
-//! The dimensions are the nine of [`crate::mechanism::NaturalCoordinates`], each moved alone. If P lies nearly on the
-//! line C-D, d and e hardly determine its position (coupler_y is the root of a small difference): then the coupler is
-//! measured by `coupler_x` and `coupler_y`, P along and across C -> D. `ground` moves B along A -> B; it is reported
-//! beside the nine, and is no part of the band because Bx and By are.
+//! The dimensions of a four-bar are the nine of [`crate::mechanism::NaturalCoordinates`], each moved alone. If P lies nearly
+//! on the line C-D, d and e hardly determine its position (coupler_y is the root of a small difference): then the coupler
+//! is measured by `coupler_x` and `coupler_y`, P along and across C -> D. Those of a slider are in
+//! [`dimensions`](super::dimensions). `ground` moves B along A -> B; it is reported beside them, and is no part of the band
+//! because Bx and By are.
 
+use super::dimensions::{Dimensions, MOST, OfOutput, of_path};
+pub use super::dimensions::{FLAT, is_flat};
 use super::sweep::Sweep;
 use crate::mechanism::effort::POINTS_AT_ONCE;
-use crate::mechanism::four_bar::gradient::{follower_gradient, ground_gradient, shape_gradient};
-use crate::mechanism::{AssemblyMode, Complex, FourBar, dot, length};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, OneLoop, dot, length};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
-/// Distance of P from the line C-D, as a part of the larger of d and e, below which P counts as on that line.
-pub const FLAT: f64 = 0.1;
 /// Speed of P, as a part of the fastest, at and below which the path has no direction at that point.
 const STANDSTILL: f64 = 1e-9;
 
@@ -76,11 +76,11 @@ pub struct Dimension {
 pub struct Sensitivity {
     /// The behaviour of the crank angles.
     pub crank: Crank,
-    /// The nine dimensions, in the order Ax, Ay, Bx, By, a, b, c, d, e (or coupler_x, coupler_y in place of d, e).
-    pub dimensions: [Dimension; 9],
-    /// The dimension |AB|, B moved along the ground line: a combination of Bx and By.
-    pub ground: Dimension,
-    /// The rms band for a standard deviation of 1 of each of the nine.
+    /// The dimensions, of a four-bar in the order Ax, Ay, Bx, By, a, b, c, d, e (or coupler_x, coupler_y in place of d, e).
+    pub dimensions: Vec<Dimension>,
+    /// The dimension |AB|, B moved along the ground line: a combination of Bx and By. `None` without a ground link.
+    pub ground: Option<Dimension>,
+    /// The rms band for a standard deviation of 1 of each of the dimensions.
     pub band: f64,
     /// The same band at the point where it is largest.
     pub worst: f64,
@@ -115,36 +115,10 @@ pub fn along(sweep: &Sweep, n: usize) -> Vec<At> {
     sweep.stretches.iter().flat_map(of).collect()
 }
 
-/// Returns whether the coupler is measured by coupler_x and coupler_y.
-pub fn is_flat(linkage: &FourBar) -> bool {
-    linkage.coupler_offset().im.abs() < FLAT * linkage.crank_side().max(linkage.follower_side())
-}
-
-/// Computes dP by the nine dimensions and the crank angle at a position; `None` at a toggle or if the loop is open.
-fn columns(linkage: &FourBar, at: &At, flat: bool) -> Option<([Complex; 9], Complex)> {
-    if !flat {
-        return linkage.with_assembly(at.assembly).gradient(at.crank_angle);
-    }
-    let frame = linkage.frame(at.crank_angle, at.assembly)?;
-    let gradient = shape_gradient(&frame, linkage.crank(), linkage.coupler(), linkage.coupler_offset())?;
-    Some((gradient.shape, gradient.crank_angle))
-}
-
-/// Computes the derivatives of the follower's angle from the ground line, degrees, as real parts; `None` at a toggle or if
-/// the loop is open.
-fn output_columns(linkage: &FourBar, at: &At) -> Option<([Complex; 9], Complex)> {
-    let frame = linkage.frame(at.crank_angle, at.assembly)?;
-    let (mut by_shape, by_crank) = follower_gradient(&frame, linkage.crank(), linkage.follower())?;
-    let by_ground = ground_gradient(linkage.crank_pivot(), linkage.follower_pivot());
-    by_shape.iter_mut().zip(by_ground).for_each(|(by, ground)| *by -= ground);
-    let degrees = |radians: f64| Complex::new(radians.to_degrees(), 0.0);
-    Some((by_shape.map(degrees), degrees(by_crank)))
-}
-
 /// Computes the shifts of the path at the given positions for errors of the dimensions; `None` if none of the positions
 /// has a derivative.
-pub fn sensitivity(linkage: &FourBar, positions: &[At], crank: Crank) -> Option<Sensitivity> {
-    sensitivity_of(linkage, positions, crank, None)
+pub fn sensitivity(linkage: impl Into<OneLoop>, positions: &[At], crank: Crank) -> Option<Sensitivity> {
+    sensitivity_of(&*of_path(&linkage.into(), positions), positions, crank, None)
 }
 
 /// Computes the changes of the follower's angle at the given positions for errors of the dimensions, degrees; `None` if none
@@ -155,39 +129,34 @@ pub fn output_sensitivity(
     crank: Crank,
     offset_is_free: bool,
 ) -> Option<Sensitivity> {
-    sensitivity_of(linkage, positions, crank, Some(offset_is_free))
+    sensitivity_of(&OfOutput(*linkage), positions, crank, Some(offset_is_free))
 }
 
 /// As [`sensitivity`], or as [`output_sensitivity`] where `output` says whether its offset is free.
 fn sensitivity_of(
-    linkage: &FourBar,
+    linkage: &dyn Dimensions,
     positions: &[At],
     crank: Crank,
     output: Option<bool>,
 ) -> Option<Sensitivity> {
-    let flat = is_flat(linkage) && output.is_none();
+    let names = linkage.names();
     let mut at_toggles = Vec::new();
     let mut places = Vec::new();
     let mut rows: Vec<Row> = Vec::new();
-    let ground = Complex::from_polar(1.0, linkage.ground_angle());
-    let columns = |at: &At| match output {
-        None => columns(linkage, at, flat),
-        Some(_) => output_columns(linkage, at),
-    };
+    let columns = |at: &At| linkage.columns(at);
     let shifts: Vec<_> = positions.par_iter().with_min_len(POINTS_AT_ONCE).map(columns).collect();
     for (j, shift) in shifts.into_iter().enumerate() {
-        let Some((nine, mut by_crank)) = shift else {
+        let Some((all, mut by_crank)) = shift else {
             at_toggles.push(j);
             continue;
         };
-        let mut row = [Complex::new(0.0, 0.0); 10];
-        row[..9].copy_from_slice(&nine);
+        let mut row = [Complex::new(0.0, 0.0); MOST + 1];
+        row[..MOST].copy_from_slice(&all);
         let settles = crank == Crank::Settles || positions[j].is_free;
         if crank == Crank::TurnsWithGround {
-            let by_ground = ground_gradient(linkage.crank_pivot(), linkage.follower_pivot());
-            row.iter_mut().zip(by_ground).for_each(|(shift, by)| *shift += by_crank * by);
+            row.iter_mut().zip(linkage.of_ground()).for_each(|(shift, by)| *shift += by_crank * by);
         }
-        row[9] = row[2] * ground.re + row[3] * ground.im;
+        row[MOST] = linkage.by_ground(&row).unwrap_or_default();
         if !settles && matches!(crank, Crank::Stays | Crank::TurnsWithGround) {
             by_crank = Complex::new(0.0, 0.0);
         }
@@ -201,20 +170,16 @@ fn sensitivity_of(
     settle(&mut rows, crank);
     let of =
         |k: usize, name: &'static str| dimension(name, &places, rows.iter().map(|row| length(row.shifts[k])));
-    let mut names = ["Ax", "Ay", "Bx", "By", "a", "b", "c", "d", "e"];
-    if flat {
-        (names[7], names[8]) = ("coupler_x", "coupler_y");
-    }
-    let together = rows.iter().map(|row| row.shifts[..9].iter().map(Complex::norm_sqr).sum::<f64>().sqrt());
+    let together =
+        rows.iter().map(|row| row.shifts[..MOST].iter().map(Complex::norm_sqr).sum::<f64>().sqrt());
     let all = dimension("all", &places, together)?;
-    let mut dimensions = [all; 9];
-    for (k, name) in names.into_iter().enumerate() {
-        dimensions[k] = of(k, name)?;
-    }
+    let dimensions =
+        names.into_iter().enumerate().map(|(k, name)| of(k, name)).collect::<Option<Vec<_>>>()?;
+    let has_ground = linkage.by_ground(&[Complex::default(); MOST]).is_some();
     Some(Sensitivity {
         crank,
         dimensions,
-        ground: of(9, "ground")?,
+        ground: if has_ground { of(MOST, "ground") } else { None },
         band: all.rms,
         worst: all.worst,
         worst_at: all.worst_at,
@@ -224,9 +189,9 @@ fn sensitivity_of(
     })
 }
 
-/// The shifts at a position for errors of the nine dimensions and of |AB|.
+/// The shifts at a position for errors of the dimensions and of |AB|.
 struct Row {
-    shifts: [Complex; 10],
+    shifts: [Complex; MOST + 1],
     /// The shift by the crank angle; zero where that stays.
     by_crank: Complex,
     /// Whether the crank settles at this position alone.
@@ -236,7 +201,7 @@ struct Row {
 /// Removes the mean of each column: the part that the offset of outputs compensates.
 fn without_mean(rows: &mut [Row]) {
     let n = rows.len().max(1) as f64;
-    let means: [Complex; 10] =
+    let means: [Complex; MOST + 1] =
         std::array::from_fn(|k| rows.iter().map(|row| row.shifts[k]).sum::<Complex>() / n);
     let mean_by_crank = rows.iter().map(|row| row.by_crank).sum::<Complex>() / n;
     for row in rows.iter_mut() {
@@ -259,7 +224,7 @@ fn settle(rows: &mut [Row], crank: Crank) {
         let timed = || rows.iter().filter(|row| !row.settles);
         let sum_sq: f64 = timed().map(|row| row.by_crank.norm_sqr()).sum();
         if sum_sq > 0.0 {
-            let along: [f64; 10] =
+            let along: [f64; MOST + 1] =
                 std::array::from_fn(|k| timed().map(|row| dot(row.by_crank, row.shifts[k])).sum());
             for row in rows.iter_mut().filter(|row| !row.settles) {
                 let by_crank = row.by_crank;

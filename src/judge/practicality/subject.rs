@@ -6,7 +6,7 @@ use super::layers::{Layering, layering};
 use super::sensitivity::{At, Crank, Sensitivity, along, output_sensitivity, sensitivity};
 use super::sweep::Sweep;
 use crate::judge::referee::judge;
-use crate::mechanism::{AssemblyMode, FourBar};
+use crate::mechanism::{AssemblyMode, OneLoop};
 use crate::record::Candidate;
 use crate::task::spec::TransmissionOver;
 use crate::task::{AngleOffset, Problem, TaskKind, Timing};
@@ -37,8 +37,32 @@ impl Practicality {
     /// Examines a candidate over the cycle or the motion used, as for its transmission angle; the path at its positions
     /// on the target.
     ///
-    /// `None` if it lacks a position for one of the problem's points, or has a crank angle that is no number, or the linkage is no four-bar.
+    /// `None` if it lacks a position for one of the problem's points, or has a crank angle that is no number.
     pub fn of_candidate(problem: &Problem, candidate: &Candidate, build: Build) -> Option<Self> {
+        let sweep = Sweep::of_candidate(problem, candidate)?;
+        let felt = sensitivity_of(problem, candidate);
+        let kind = problem.spec().task.kind();
+        Some(Practicality { kind, ..Practicality::of(sweep, build, felt, true) })
+    }
+
+    /// Examines a linkage by itself over its whole motion without passing a toggle ([`Sweep::of_linkage`]), and the
+    /// path along that motion, with free timing ([`Crank::Settles`]). `None` if it cannot be assembled.
+    pub fn of_linkage(linkage: impl Into<OneLoop>, build: Build) -> Option<Self> {
+        let sweep = Sweep::of_linkage(linkage)?;
+        let felt = sensitivity(sweep.linkage, &along(&sweep, POSITIONS), Crank::Settles);
+        Some(Practicality::of(sweep, build, felt, false))
+    }
+
+    fn of(sweep: Sweep, build: Build, sensitivity: Option<Sensitivity>, at_points: bool) -> Self {
+        let (layering, distances) = (layering(&sweep, build), pivot_distances(&sweep));
+        Practicality { sweep, build, layering, distances, sensitivity, at_points, kind: TaskKind::Path }
+    }
+}
+
+impl Sweep {
+    /// Returns the motion of a candidate: the cycle, or the motion used, as for its transmission angle. `None` if it lacks a
+    /// position for one of the problem's points, or has a crank angle that is no number.
+    pub fn of_candidate(problem: &Problem, candidate: &Candidate) -> Option<Self> {
         let n = problem.task().len();
         let angles = &candidate.crank_deg;
         if angles.len() != n || candidate.t1_at.len() != n || !angles.iter().all(|deg| deg.is_finite()) {
@@ -47,23 +71,7 @@ impl Practicality {
         let radians: Vec<f64> = angles.iter().map(|deg| deg.to_radians()).collect();
         let verdict = judge(problem.task(), candidate.linkage, &radians, &candidate.t1_at);
         let cycle = candidate.transmission_deg.over == TransmissionOver::Cycle;
-        let sweep = Sweep::of_motion(&verdict.motion, cycle)?;
-        let felt = sensitivity_of(problem, candidate);
-        let kind = problem.spec().task.kind();
-        Some(Practicality { kind, ..Practicality::of(sweep, build, felt, true) })
-    }
-
-    /// Examines a linkage by itself over its whole motion without passing a toggle ([`Sweep::of_linkage`]), and the
-    /// path along that motion, with free timing ([`Crank::Settles`]). `None` if it cannot be assembled.
-    pub fn of_linkage(linkage: &FourBar, build: Build) -> Option<Self> {
-        let sweep = Sweep::of_linkage(linkage)?;
-        let felt = sensitivity(linkage, &along(&sweep, POSITIONS), Crank::Settles);
-        Some(Practicality::of(sweep, build, felt, false))
-    }
-
-    fn of(sweep: Sweep, build: Build, sensitivity: Option<Sensitivity>, at_points: bool) -> Self {
-        let (layering, distances) = (layering(&sweep, build), pivot_distances(&sweep));
-        Practicality { sweep, build, layering, distances, sensitivity, at_points, kind: TaskKind::Path }
+        Some(Sweep::of_motion(&verdict.motion, cycle))
     }
 }
 
@@ -81,13 +89,15 @@ impl At {
 }
 
 /// Returns the sensitivity of a candidate: of its path, or in a function of its output; `None` if no position has a
-/// derivative, or of a linkage with a slider.
+/// derivative, or of the output of a slider.
 pub fn sensitivity_of(problem: &Problem, candidate: &Candidate) -> Option<Sensitivity> {
-    let linkage = candidate.linkage.four_bar()?;
     let (at, crank) = (At::of_candidate(problem, candidate), crank_of(problem));
     match problem.task().body().filter(|_| problem.is_function()) {
-        None => sensitivity(linkage, &at, crank),
-        Some(output) => output_sensitivity(linkage, &at, crank, output.given_frame(0.0).is_none()),
+        None => sensitivity(candidate.linkage, &at, crank),
+        Some(output) => {
+            let linkage = candidate.linkage.four_bar()?;
+            output_sensitivity(linkage, &at, crank, output.given_frame(0.0).is_none())
+        }
     }
 }
 

@@ -1,7 +1,6 @@
 //! Default tolerance of dimensions.
 
-use crate::mechanism::FourBar;
-use crate::mechanism::Unit;
+use crate::mechanism::{OneLoop, Unit};
 
 /// The default standard deviation of a dimension, in millimetres.
 const TOLERANCE_MM: f64 = 0.1;
@@ -10,6 +9,7 @@ const TOLERANCE_SHARE: f64 = 1e-3;
 
 /// Returns the default standard deviation of a dimension: 0.1 mm, or, if the unit is not known, a thousandth of the
 /// longest link.
-pub fn usual_tolerance(linkage: &FourBar, unit: Option<Unit>) -> f64 {
+pub fn usual_tolerance(linkage: impl Into<OneLoop>, unit: Option<Unit>) -> f64 {
+    let linkage = linkage.into();
     unit.map_or(TOLERANCE_SHARE * linkage.longest_link(), |unit| TOLERANCE_MM * Unit::Mm.factor_to(unit))
 }

@@ -70,6 +70,25 @@ pub struct LoopJoints {
     pub coupler: Complex,
 }
 
+/// The position of a four-bar, whose coupler points from C to D.
+impl From<Joints> for LoopJoints {
+    fn from(joints: Joints) -> Self {
+        LoopJoints { joints, coupler: joints.follower_pin - joints.crank_pin }
+    }
+}
+
+impl From<&Joints> for LoopJoints {
+    fn from(joints: &Joints) -> Self {
+        LoopJoints::from(*joints)
+    }
+}
+
+impl From<&LoopJoints> for LoopJoints {
+    fn from(at: &LoopJoints) -> Self {
+        *at
+    }
+}
+
 /// Mobility of a linkage of one loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopMobility {
@@ -506,6 +525,18 @@ impl From<FourBar> for OneLoop {
 impl From<&FourBar> for OneLoop {
     fn from(linkage: &FourBar) -> Self {
         OneLoop::FourBar(*linkage)
+    }
+}
+
+impl From<SliderCrank> for OneLoop {
+    fn from(linkage: SliderCrank) -> Self {
+        OneLoop::SliderCrank(linkage)
+    }
+}
+
+impl From<InvertedSliderCrank> for OneLoop {
+    fn from(linkage: InvertedSliderCrank) -> Self {
+        OneLoop::InvertedSliderCrank(linkage)
     }
 }
 

@@ -5,31 +5,65 @@
 //! about the corners of the hull; once round it turns by 2 pi. With hull area H and perimeter L its area is H + L r +
 //! pi r^2 and its perimeter L + 2 pi r (Steiner 1840).
 //!
-//! | link | holes | own frame: origin, x axis |
+//! | link of a four-bar | holes | own frame: origin, x axis |
 //! |---|---|---|
 //! | ground | A, B | A, towards B |
 //! | crank | A, C | A, towards C |
 //! | follower | B, D | B, towards D |
 //! | coupler | C, D, P | C, towards D |
 //!
-//! Lengths are in the unit of the linkage.
+//! | link of a slider-crank | holes and slot | own frame: origin, x axis |
+//! |---|---|---|
+//! | ground | A, the rail as a slot | A, along the line |
+//! | crank, coupler | as of a four-bar | |
+//! | block | D, guide pins E and F | D, along the line |
+//!
+//! | link of an inverted slider-crank | holes and slot | own frame: origin, x axis |
+//! |---|---|---|
+//! | ground, crank | as of a four-bar | |
+//! | coupler | C, P, a slot on its line | C, along the coupler |
+//! | block | B, guide pins E and F | D, along the coupler |
+//!
+//! A slot counts in the hull as its two ends do. Lengths are in the unit of the linkage.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `four_bar`, `slider_crank`, `inverted_slider_crank` | the plates of each kind, and bounds of their motion |
+//! | `guide` | the block of a slider and the slot that it runs in |
+//! | `hull`, `outline`, `separation` | geometry of one plate, and of two |
+//! | `joint`, `kind`, `motion`, `parts` | joints and pins; what a kind gives; intervals of the motion; all parts of a linkage |
 
+mod four_bar;
+mod guide;
 mod hull;
+mod inverted_slider_crank;
+mod joint;
+mod kind;
+mod motion;
 mod outline;
+pub(crate) mod parts;
 mod separation;
+mod slider_crank;
+#[cfg(test)]
+mod slider_tests;
 #[cfg(test)]
 mod tests;
 
+pub use guide::{Guide, Sizes};
+pub use joint::{Joint, Pin};
+pub use kind::Slot;
+pub use motion::{Reach, Stretch};
 pub use outline::Edge;
+pub use parts::Parts;
 
-use crate::mechanism::{Complex, FourBar, Joints, bounding_box, point};
+use crate::mechanism::{Complex, FourBar, LoopJoints, OneLoop, bounding_box};
 use std::f64::consts::PI;
 
 /// Distance, as a part of the plate's size (hull and radius), below which two holes coincide and a corner of the hull
 /// is left out: far below what any machine cuts.
 pub const COINCIDENT: f64 = 1e-9;
 
-/// A link of a four-bar.
+/// A link of a linkage of one loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Link {
     /// The fixed link from A to B.
@@ -38,12 +72,14 @@ pub enum Link {
     Crank,
     /// The link with C, D and the coupler point P.
     Coupler,
-    /// The link from B to D.
+    /// The link from B to D of a four-bar.
     Follower,
+    /// The block of a slider.
+    Block,
 }
 
 impl Link {
-    /// All four, in the order of drawings and lists.
+    /// All four of a four-bar, in the order of drawings and lists.
     pub const ALL: [Link; 4] = [Link::Ground, Link::Crank, Link::Coupler, Link::Follower];
 
     /// Returns the name of the link in lower case.
@@ -53,6 +89,17 @@ impl Link {
             Link::Crank => "crank",
             Link::Coupler => "coupler",
             Link::Follower => "follower",
+            Link::Block => "block",
+        }
+    }
+
+    /// Returns the place of the link around the loop, from the ground on: a block has that of a follower.
+    pub fn place(self) -> usize {
+        match self {
+            Link::Ground => 0,
+            Link::Crank => 1,
+            Link::Coupler => 2,
+            Link::Follower | Link::Block => 3,
         }
     }
 }
@@ -60,7 +107,7 @@ impl Link {
 /// The centre of a hole in the plate's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hole {
-    /// Letter of the joint: A, B, C, D or P.
+    /// Letter of the joint: A, B, C, D or P; E or F of a guide pin.
     pub name: char,
     /// Position of the centre.
     pub at: Complex,
@@ -83,9 +130,13 @@ impl Placement {
     /// Returns the frame with its origin at `from` and its x axis towards `to`; along the plane's x axis if both are
     /// one point.
     pub fn between(from: Complex, to: Complex) -> Self {
-        let along = to - from;
-        let length = along.norm();
-        let direction = if length > 0.0 { along / length } else { Complex::new(1.0, 0.0) };
+        Placement::along(from, to - from)
+    }
+
+    /// Returns the frame with its origin at `from` and its x axis along a vector; along the plane's x axis if that is 0.
+    pub fn along(from: Complex, vector: Complex) -> Self {
+        let length = vector.norm();
+        let direction = if length > 0.0 { vector / length } else { Complex::new(1.0, 0.0) };
         Placement { origin: from, direction }
     }
 
@@ -95,21 +146,25 @@ impl Placement {
     }
 }
 
-/// A link's plate: every point within `radius` of the convex hull of the hole centres.
+/// A link's plate: every point within `radius` of the convex hull of the hole centres and the slot's ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plate {
     /// The link.
     pub link: Link,
     /// The hole centres in the plate's own frame.
     pub holes: Vec<Hole>,
+    /// The slot, of a plate that guides a block.
+    pub slot: Option<Slot>,
     /// Distance that the plate reaches beyond the hull.
     pub radius: f64,
+    /// The points whose hull it is.
+    points: Vec<Complex>,
     /// The corners of the hull, counter-clockwise; one or two if the hull is a point or a line.
     corners: Vec<Complex>,
 }
 
 impl Plate {
-    /// Builds the plate of one link of a linkage.
+    /// Builds the plate of one link of a four-bar.
     ///
     /// ```
     /// use linkwright::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
@@ -124,40 +179,65 @@ impl Plate {
     /// # Ok::<(), linkwright::LinkageError>(())
     /// ```
     pub fn of(linkage: &FourBar, link: Link, radius: f64) -> Self {
-        let [ground, crank, coupler, follower] = linkage.links();
-        let x = |along: f64| point([along, 0.0]);
-        let holes = match link {
-            Link::Ground => vec![('A', x(0.0)), ('B', x(ground))],
-            Link::Crank => vec![('A', x(0.0)), ('C', x(crank))],
-            Link::Coupler => vec![('C', x(0.0)), ('D', x(coupler)), ('P', linkage.coupler_offset())],
-            Link::Follower => vec![('B', x(0.0)), ('D', x(follower))],
-        };
-        let holes = holes.into_iter().map(|(name, at)| Hole { name, at }).collect();
-        Plate::new(link, holes, radius)
+        Plate::shaped(link, kind::Kind::shape(linkage, link, None), radius)
     }
 
-    /// Builds the plates of all four links, in the order of [`Link::ALL`].
+    /// Builds the plates of all four links of a four-bar, in the order of [`Link::ALL`].
     pub fn all(linkage: &FourBar, radius: f64) -> [Plate; 4] {
         Link::ALL.map(|link| Plate::of(linkage, link, radius))
     }
 
     /// Builds a plate with holes anywhere (at least one); negative radii count as 0.
     pub fn new(link: Link, holes: Vec<Hole>, radius: f64) -> Self {
-        let radius = radius.max(0.0);
         let centres: Vec<Complex> = holes.iter().map(|hole| hole.at).collect();
-        let corners = hull::hull(&centres, COINCIDENT * (hull::extent(&centres) + radius));
-        Plate { link, holes, radius, corners }
+        Plate::around(link, (holes, None), centres, radius)
+    }
+
+    /// Builds the plate of a link with its holes and its slot.
+    fn shaped(link: Link, shape: kind::Shape, radius: f64) -> Self {
+        let holes: Vec<Hole> = shape.holes.into_iter().map(|(name, at)| Hole { name, at }).collect();
+        let ends = shape.slot.iter().flat_map(|slot| slot.ends);
+        let points = holes.iter().map(|hole| hole.at).chain(ends).chain(shape.corners).collect();
+        Plate::around(link, (holes, shape.slot), points, radius)
+    }
+
+    /// Builds a plate around the hull of points.
+    fn around(
+        link: Link,
+        (holes, slot): (Vec<Hole>, Option<Slot>),
+        points: Vec<Complex>,
+        radius: f64,
+    ) -> Self {
+        let radius = radius.max(0.0);
+        let corners = hull::hull(&points, COINCIDENT * (hull::extent(&points) + radius));
+        Plate { link, holes, slot, radius, points, corners }
     }
 
     /// Returns the same plate with another radius: a tool that cuts away half its kerf needs a plate grown by it.
     #[must_use]
     pub fn with_radius(&self, radius: f64) -> Self {
-        Plate::new(self.link, self.holes.clone(), radius)
+        Plate::around(self.link, (self.holes.clone(), self.slot), self.points.clone(), radius)
     }
 
     /// Computes the closed outline, counter-clockwise: each edge starts exactly where the one before ends.
     pub fn outline(&self) -> Vec<Edge> {
         outline::outline(&self.corners, self.radius)
+    }
+
+    /// Computes the closed outline of the slot for its width, counter-clockwise; none without a slot.
+    pub fn slot_outline(&self, width: f64) -> Vec<Edge> {
+        self.slot.map_or(Vec::new(), |slot| outline::outline(&slot.ends, 0.5 * width))
+    }
+
+    /// Computes the distance of a convex polygon (corners counter-clockwise, in the plate's own frame) from the centre
+    /// line of the slot; infinite without a slot.
+    pub fn distance_from_slot(&self, polygon: &[Complex]) -> f64 {
+        self.slot.map_or(f64::INFINITY, |slot| separation::separation(polygon, &slot.ends))
+    }
+
+    /// Returns the largest distance of a point of the hull from the origin of the plate's own frame.
+    pub fn farthest(&self) -> f64 {
+        self.corners.iter().map(|corner| corner.norm()).fold(0.0, f64::max)
     }
 
     /// Computes the area of the whole plate, with the area of its holes included.
@@ -192,14 +272,8 @@ impl Plate {
     }
 
     /// Returns the placement of the plate at a position of the linkage.
-    pub fn placement(&self, linkage: &FourBar, joints: &Joints) -> Placement {
-        let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-        match self.link {
-            Link::Ground => Placement::between(a, b),
-            Link::Crank => Placement::between(a, joints.crank_pin),
-            Link::Coupler => Placement::between(joints.crank_pin, joints.follower_pin),
-            Link::Follower => Placement::between(b, joints.follower_pin),
-        }
+    pub fn placement(&self, linkage: impl Into<OneLoop>, joints: impl Into<LoopJoints>) -> Placement {
+        kind::kind_of(&linkage.into()).placement(self.link, &joints.into())
     }
 
     /// Computes the signed distance between two placed plates, below zero if they overlap (then its size is the least

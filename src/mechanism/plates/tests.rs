@@ -1,7 +1,7 @@
 //! Tests of plates: outlines close, areas are those of the outline, separations those of a dense sweep.
 
 use super::*;
-use crate::mechanism::{AssemblyMode, CouplerSide, NaturalCoordinates, cross, dot};
+use crate::mechanism::{AssemblyMode, CouplerSide, NaturalCoordinates, cross, dot, point};
 use std::f64::consts::TAU;
 
 fn plate(points: &[[f64; 2]], radius: f64) -> Plate {

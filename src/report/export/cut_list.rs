@@ -1,12 +1,13 @@
 //! The cut list: the sizes of the plates and the places of their holes.
 
-use super::model::{Model, hole_distances};
-use crate::mechanism::plates::{Link, Placement, Plate};
+use super::model::{Model, distances};
+use crate::mechanism::Complex;
+use crate::mechanism::plates::{Link, Placement, Plate, Slot};
 use crate::report::csv::written;
 use crate::report::text::{cell, exact};
 use std::f64::consts::PI;
 
-/// The columns; there is one row for each plate and pair of its holes.
+/// The columns; there is one row for each plate and pair of its holes, the two ends S and T of a slot among them.
 const COLUMNS: [&str; 12] = [
     "plate",
     "holes",
@@ -28,11 +29,20 @@ fn size(plate: &Plate) -> [f64; 2] {
     [high.re - low.re, high.im - low.im]
 }
 
-/// Returns the area of the plate without its holes.
+/// Returns the letters and the centres of a plate's holes, and of the two ends of its slot.
+fn marked(plate: &Plate) -> Vec<(String, Complex)> {
+    let ends = plate.slot.into_iter().flat_map(|slot| Slot::LETTERS.into_iter().zip(slot.ends));
+    let ends = ends.map(|(letter, end)| (letter.to_owned(), end));
+    plate.distinct_holes().into_iter().chain(ends).collect()
+}
+
+/// Returns the area of the plate without its holes and its slot.
 fn area(model: &Model<'_>, plate: &Plate) -> f64 {
     let holes = plate.distinct_holes().into_iter();
     let area = |(joints, _): (String, _)| PI * (0.5 * model.holes.of(plate.link, &joints)).powi(2);
-    plate.area() - holes.map(area).sum::<f64>()
+    let width = model.holes.pins;
+    let slot = plate.slot.map_or(0.0, |slot| slot.length() * width + PI * (0.5 * width).powi(2));
+    plate.area() - holes.map(area).sum::<f64>() - slot
 }
 
 fn number(value: f64) -> String {
@@ -40,14 +50,16 @@ fn number(value: f64) -> String {
 }
 
 /// Returns the number of pins that join the plates, and whether P has a hole of its own.
-fn pins(plates: &[(Plate, Placement)]) -> (usize, bool) {
+fn pins(model: &Model<'_>, plates: &[(Plate, Placement)]) -> (usize, bool) {
     let holes = |link| {
         let plate = plates.iter().filter(move |(plate, _)| plate.link == link);
         plate.flat_map(|(plate, _)| plate.distinct_holes())
     };
     let is_joined = |(name, _): (String, _)| name.contains('P') && name.len() > 1;
     // Coincident pivots A and B share one pin.
-    (2 + holes(Link::Ground).count(), !holes(Link::Coupler).any(is_joined))
+    let shared = holes(Link::Ground).any(|(name, _)| name.len() > 1);
+    let all = model.parts.as_ref().map_or(0, |parts| parts.pins().len());
+    (all - usize::from(shared), !holes(Link::Coupler).any(is_joined))
 }
 
 /// Returns the list as text.
@@ -66,7 +78,7 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     out.push_str(&line("plate", "length mm", "width mm", "area mm2", "holes, mm apart"));
     for (plate, _) in plates {
         let [length, width] = size(plate);
-        let pairs = hole_distances(plate);
+        let pairs = distances(&marked(plate));
         let mut holes: Vec<String> =
             pairs.iter().map(|(from, to, apart)| format!("{from} to {to} {}", number(*apart))).collect();
         if holes.is_empty() {
@@ -75,7 +87,7 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
         let [length, width, area] = [length, width, area(model, plate)].map(number);
         out.push_str(&line(plate.link.name(), &length, &width, &area, &holes.join(", ")));
     }
-    let (pins, tracer) = pins(plates);
+    let (pins, tracer) = pins(model, plates);
     let motor = model.holes.are_for_a_motor();
     out.push_str(&format!(
         "\n{} plates, {} pins of {} mm through at least two plates ({} mm)",
@@ -87,7 +99,20 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     if motor {
         out.push_str(", a shaft at A");
     }
-    out.push_str(if tracer { ", a pen or a pin at P\n" } else { "; P is on a pin\n" });
+    let undrilled = model.parts.as_ref().is_some_and(|parts| parts.undrilled().is_some());
+    out.push_str(match (undrilled, tracer) {
+        (true, _) => "; P lies in the slot and has no hole\n",
+        (false, true) => ", a pen or a pin at P\n",
+        (false, false) => "; P is on a pin\n",
+    });
+    if let Some((plate, slot)) = plates.iter().find_map(|(plate, _)| Some((plate, plate.slot?))) {
+        out.push_str(&format!(
+            "slot in the {}: {} mm wide, {} mm from S to T, the centres of its round ends; the block's pins E and F run in it\n",
+            plate.link.name(),
+            number(model.holes.pins),
+            number(slot.length())
+        ));
+    }
     out
 }
 
@@ -95,7 +120,7 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
 pub(super) fn csv(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let rows = plates.iter().flat_map(|(plate, _)| {
         let holes = plate.distinct_holes();
-        let mut pairs = hole_distances(plate);
+        let mut pairs = distances(&marked(plate));
         if pairs.is_empty() {
             pairs = holes.iter().map(|(name, _)| (name.clone(), name.clone(), 0.0)).collect();
         }

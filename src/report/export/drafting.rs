@@ -3,30 +3,38 @@
 use super::dxf::Drawing;
 use super::marks::marks;
 use super::model::Model;
+use super::skeleton::Skeleton;
 use crate::files::generator::mark;
 use crate::mechanism::plates::{Placement, Plate};
-use crate::mechanism::{Complex, Joints};
-use crate::report::scene::all_joints;
+use crate::mechanism::{Complex, LoopJoints};
 use crate::report::text::exact;
 
-/// Draws the links as lines, the coupler curve, the joints as circles of the hole's diameter, and the target points.
-pub(super) fn sketch(model: &Model<'_>, joints: &Joints) -> String {
+/// Draws the links as lines, the coupler curve, the joints as circles of the hole's diameter, and the target points; of a
+/// slider the rail or the rod and the block on a layer of their own.
+pub(super) fn sketch(model: &Model<'_>, at: &LoopJoints) -> String {
     let mut layers = vec![("SKELETON", 7), ("CURVE", 1), ("JOINTS", 3), ("TARGET", 5)];
-    let body = model.body(joints);
+    let (body, skeleton) = (model.body(at), Skeleton::of(model, at));
     layers.extend(body.map(|_| ("BODY", 6)));
+    layers.extend(skeleton.line.map(|_| (SLIDER, 8)));
     let mut drawing = Drawing::new(&layers);
-    let [a, b, c, d, p] = all_joints(model.linkage, joints);
-    for (from, to) in [(a, b), (a, c), (c, d), (b, d), (c, p), (d, p)] {
+    for [from, to] in skeleton.bars() {
         // Some programs refuse a line without length.
         if from != to {
             drawing.line("SKELETON", from, to);
         }
     }
+    if let Some([from, to]) = skeleton.line {
+        drawing.line(SLIDER, from, to);
+        let slot: Vec<(Complex, f64)> =
+            skeleton.slot.iter().map(|edge| (edge.from(), edge.bulge())).collect();
+        drawing.polyline(SLIDER, &slot, true);
+        drawing.polyline(SLIDER, &straight(&skeleton.block), true);
+    }
     for curve in &model.curves {
         drawing.polyline("CURVE", &straight(curve), true);
     }
-    for at in [a, b, c, d, p] {
-        drawing.circle("JOINTS", at, 0.5 * model.holes.pins);
+    for (_, at) in &skeleton.joints {
+        drawing.circle("JOINTS", *at, 0.5 * model.holes.pins);
     }
     for at in &model.target {
         drawing.point("TARGET", *at);
@@ -54,10 +62,12 @@ fn layer(plate: &Plate) -> String {
 /// The colours of what is cut and of what is engraved, red and blue: lasers tell work apart by colours.
 const CUT: u8 = 1;
 const ENGRAVED: u8 = 5;
+/// The layer of the rail or the rod and of the block.
+const SLIDER: &str = "SLIDER";
 /// The layer of what is engraved.
 const MARK: &str = "MARK";
 
-/// Draws each plate on its own layer: one closed contour, holes as true circles, both offset by half the kerf; names to
+/// Draws each plate on its own layer: one closed contour, holes as true circles, a slot as a closed contour, all offset by half the kerf; names to
 /// engrave on a layer of their own, unless the settings leave them out.
 pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let mut layers: Vec<(String, u8)> = plates.iter().map(|(plate, _)| (layer(plate), CUT)).collect();
@@ -71,6 +81,12 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String
         let contour: Vec<(Complex, f64)> =
             edges.iter().map(|edge| (at.of(edge.from()), edge.bulge())).collect();
         drawing.polyline(layer, &contour, true);
+        let slot = plate.slot_outline(model.cut_slot());
+        if !slot.is_empty() {
+            let slot: Vec<(Complex, f64)> =
+                slot.iter().map(|edge| (at.of(edge.from()), edge.bulge())).collect();
+            drawing.polyline(layer, &slot, true);
+        }
         for (joints, hole) in plate.distinct_holes() {
             drawing.circle(layer, at.of(hole), model.cut_hole(plate.link, &joints));
         }

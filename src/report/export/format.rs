@@ -132,6 +132,11 @@ impl Format {
         self.about().2
     }
 
+    /// Returns whether the file shows plates or lists them.
+    pub(super) fn has_plates(self) -> bool {
+        self.settings().contains(&"margin_mm")
+    }
+
     /// Returns whether the file is text, which may go to standard output.
     pub fn is_text(self) -> bool {
         !PICTURES.contains(&self.name())

@@ -2,8 +2,7 @@
 
 use super::model::hole_distances;
 use super::settings::{Refusal, Settings};
-use crate::mechanism::FourBar;
-use crate::mechanism::plates::{Link, Plate};
+use crate::mechanism::plates::{Link, Parts};
 use crate::report::text::{brief, exact};
 
 /// The diameters of the holes, in mm.
@@ -58,15 +57,16 @@ impl Holes {
         let largest = match link {
             Link::Ground => self.boss.max(self.pins),
             Link::Crank => self.motor.max(self.pins),
-            Link::Coupler | Link::Follower => self.pins,
+            Link::Coupler | Link::Follower | Link::Block => self.pins,
         };
         0.5 * largest + margin
     }
 
-    /// Checks that no two holes of a plate run into each other.
-    pub(super) fn check(&self, linkage: &FourBar, settings: &Settings) -> Result<(), Refusal> {
-        let pairs = Link::ALL.into_iter().flat_map(|link| {
-            let plate = Plate::of(linkage, link, 0.0);
+    /// Checks that no two holes of a plate run into each other, nor the slot into a hole.
+    pub(super) fn check(&self, parts: &Parts, settings: &Settings) -> Result<(), Refusal> {
+        self.check_slot(parts, settings)?;
+        let pairs = parts.links().into_iter().flat_map(|link| {
+            let plate = parts.plate(link, 0.0);
             hole_distances(&plate).into_iter().map(move |(from, to, apart)| {
                 let room = apart - 0.5 * (self.of(link, &from) + self.of(link, &to));
                 (room, link, from, to, apart)
@@ -108,5 +108,21 @@ impl Holes {
             ),
             help,
         ))
+    }
+
+    /// Checks that the slot of a plate does not run into one of its holes.
+    fn check_slot(&self, parts: &Parts, settings: &Settings) -> Result<(), Refusal> {
+        let Some((link, joints, distance)) = parts.hole_in_slot(|link, joints| self.of(link, joints)) else {
+            return Ok(());
+        };
+        let message = format!(
+            "the slot of the {} runs into its hole at {joints}: the line on which the block's pins run comes within {} mm of \
+             it",
+            link.name(),
+            brief(distance, 3)
+        );
+        let help = "choose a smaller hole_mm and margin_mm, which shorten the block and its slot, or a linkage whose block \
+            keeps farther from that hole over its motion";
+        Err(Refusal::about(settings, "hole_mm", message, help))
     }
 }

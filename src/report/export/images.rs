@@ -2,9 +2,10 @@
 
 use super::model::Model;
 use super::settings::Refusal;
+use super::skeleton::Skeleton;
 use crate::files::generator;
-use crate::mechanism::{Complex, Joints};
-use crate::report::scene::{Bounds, all_joints, circuits_through};
+use crate::mechanism::{Complex, LoopJoints};
+use crate::report::scene::{Bounds, positions_through};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
@@ -31,10 +32,10 @@ fn failed(why: impl Display) -> Refusal {
 
 /// Draws a still picture as PNG.
 pub(super) fn png(model: &Model<'_>) -> Result<Vec<u8>, Refusal> {
-    let joints = model.pose()?;
-    let sheet = Sheet::around(model, &[joints], model.settings.size_px.unwrap_or(STILL_PX));
+    let at = model.pose()?;
+    let sheet = Sheet::around(model, &[at], model.settings.size_px.unwrap_or(STILL_PX));
     let mut picture = sheet.background(model)?;
-    sheet.linkage(&mut picture, model, &joints);
+    sheet.linkage(&mut picture, model, &at);
     let bytes = picture.encode_png().map_err(failed)?;
     Ok(with_software(bytes))
 }
@@ -69,7 +70,7 @@ fn crc32(bytes: &[u8]) -> u32 {
 pub(super) fn gif(model: &Model<'_>) -> Result<Vec<u8>, Refusal> {
     let (position, start) = model.start()?;
     let n = model.settings.frames.unwrap_or(FRAMES);
-    let poses = circuits_through(&model.linkage, [position], n).pop().unwrap_or(vec![start]);
+    let poses = positions_through(model.linkage, [position], n).pop().unwrap_or(vec![start]);
     let sheet = Sheet::around(model, &poses, model.settings.size_px.unwrap_or(MOVING_PX));
     let background = sheet.background(model)?;
     let palette = palette();
@@ -85,9 +86,9 @@ pub(super) fn gif(model: &Model<'_>) -> Result<Vec<u8>, Refusal> {
         PAPER => 0,
         _ => *known.entry(colour).or_insert_with(|| nearest(&palette, colour)),
     };
-    for joints in &poses {
+    for at in &poses {
         let mut picture = background.clone();
-        sheet.linkage(&mut picture, model, joints);
+        sheet.linkage(&mut picture, model, at);
         let pixels: Vec<u8> = picture.data().chunks_exact(4).map(|p| index([p[0], p[1], p[2]])).collect();
         let mut frame = gif::Frame::from_indexed_pixels(width, height, pixels, None);
         frame.delay = DELAY;
@@ -110,8 +111,8 @@ struct Sheet {
 }
 
 impl Sheet {
-    fn around(model: &Model<'_>, poses: &[Joints], side: usize) -> Self {
-        let joints = poses.iter().flat_map(|joints| all_joints(&model.linkage, joints));
+    fn around(model: &Model<'_>, poses: &[LoopJoints], side: usize) -> Self {
+        let joints = poses.iter().flat_map(|at| Skeleton::of(model, at).points().collect::<Vec<_>>());
         let all = joints.chain(model.target.iter().copied()).chain(model.curves.iter().flatten().copied());
         let [low, high] = Bounds::of(all).corners();
         let extent = (high - low).re.max((high - low).im);
@@ -176,20 +177,32 @@ impl Sheet {
     }
 
     /// Draws the links and joints of a position.
-    fn linkage(&self, picture: &mut Pixmap, model: &Model<'_>, joints: &Joints) {
-        let [a, b, c, d, p] = all_joints(&model.linkage, joints);
-        if let Some(path) = self.path(&[c, d, p], true) {
+    fn linkage(&self, picture: &mut Pixmap, model: &Model<'_>, at: &LoopJoints) {
+        let skeleton = Skeleton::of(model, at);
+        if let Some(line) = skeleton.line {
+            self.line(picture, &line, false, LINKS, if skeleton.ground.is_some() { 0.012 } else { 0.004 });
+        }
+        if let Some(path) = self.path(&skeleton.coupler, true).filter(|_| skeleton.coupler.len() > 2) {
             picture.fill_path(&path, &paint(COUPLER, 170), FillRule::Winding, Transform::identity(), None);
         }
-        self.line(picture, &[c, d, p], true, LINKS, 0.006);
-        self.line(picture, &[a, c], false, LINKS, 0.012);
-        self.line(picture, &[b, d], false, LINKS, 0.012);
-        for (joint, radius) in [(a, 0.017), (b, 0.017), (c, 0.012), (d, 0.012)] {
-            self.disc(picture, joint, LINKS, radius);
-            self.disc(picture, joint, PAPER, radius - 0.005);
+        self.line(picture, &skeleton.coupler, true, LINKS, 0.006);
+        self.line(picture, &skeleton.crank, false, LINKS, 0.012);
+        if let Some(follower) = skeleton.follower {
+            self.line(picture, &follower, false, LINKS, 0.012);
         }
-        self.disc(picture, p, CURVE, 0.012);
-        if let Some(frame) = model.body(joints) {
+        if let Some(path) = self.path(&skeleton.block, true) {
+            picture.fill_path(&path, &paint(PAPER, 255), FillRule::Winding, Transform::identity(), None);
+            self.line(picture, &skeleton.block, true, LINKS, 0.006);
+        }
+        for (name, joint) in &skeleton.joints {
+            let radius = if matches!(*name, "A" | "B") { 0.017 } else { 0.012 };
+            if *name != "P" {
+                self.disc(picture, *joint, LINKS, radius);
+                self.disc(picture, *joint, PAPER, radius - 0.005);
+            }
+        }
+        self.disc(picture, at.joints.coupler_point, CURVE, 0.012);
+        if let Some(frame) = model.body(at) {
             self.line(picture, &frame, false, CURVE, 0.007);
         }
     }

@@ -120,6 +120,7 @@ impl Mark {
                 .distinct_holes()
                 .iter()
                 .all(|(joints, at)| self.distance(*at) >= 0.5 * hole(joints) + clear)
+            && plate.distance_from_slot(&self.corners(0.0)) >= 0.5 * hole("") + clear
             && others.iter().all(|other| {
                 // Boxes apart: none has a corner or its centre line near the other.
                 let points = |mark: &Mark| mark.corners(0.0).into_iter().chain([mark.centre]);
@@ -172,6 +173,11 @@ pub(super) fn marks(plate: &Plate, at: &Placement, (hole, margin): (Hole<'_>, f6
         .enumerate()
         .flat_map(|(i, (_, one))| holes[..i].iter().map(move |(_, other)| (one, other)));
     let mut pairs: Vec<(Complex, Complex)> = pairs.map(|(one, other)| (*one, *other)).collect();
+    // Towards the slot, too.
+    let ends = plate
+        .slot
+        .map_or(Vec::new(), |slot| vec![slot.ends[0], slot.ends[1], 0.5 * (slot.ends[0] + slot.ends[1])]);
+    pairs.extend(holes.iter().flat_map(|(_, hole)| ends.iter().map(|end| (*hole, *end))));
     pairs.sort_by(|one, other| (other.1 - other.0).norm().total_cmp(&(one.1 - one.0).norm()));
     let names = |height: f64| -> Vec<Mark> {
         let word = plate.link.name().to_uppercase();
@@ -237,8 +243,8 @@ mod tests {
 
     #[test]
     fn every_letter_of_every_name_has_strokes_in_its_cell() {
-        for letter in Link::ALL.iter().flat_map(|link| link.name().to_uppercase().chars().collect::<Vec<_>>())
-        {
+        let links = Link::ALL.into_iter().chain([Link::Block]);
+        for letter in links.flat_map(|link| link.name().to_uppercase().chars().collect::<Vec<_>>()) {
             assert!(!strokes(letter).is_empty(), "{letter}");
             for [x, y] in strokes(letter).iter().copied().flatten() {
                 assert!((0.0..=CELL[0]).contains(x) && (0.0..=CELL[1]).contains(y), "{letter}");

@@ -26,7 +26,7 @@ const PHASES: [f64; 4] = [0.291, 0.137, 0.413, 0.067];
 const STAGGER: f64 = 0.019;
 
 impl Mesh {
-    /// Returns the mesh of a placed plate with round holes, with its lower side at z = 0. `None` if no closed body was
+    /// Returns the mesh of a placed plate with its holes and its slot, with its lower side at z = 0. `None` if no closed body was
     /// found (holes that leave the plate).
     pub(super) fn of(model: &Model<'_>, plate: &Plate, place: &Placement) -> Option<Self> {
         PHASES.iter().find_map(|phase| Mesh::with_phase(model, plate, place, *phase))
@@ -42,6 +42,9 @@ impl Mesh {
             let turn = |i: usize| Complex::from_polar(radius, -TAU * (i as f64 + phase) / n as f64);
             rings.push((0..n).map(|i| centre + turn(i)).collect());
         }
+        // Clockwise, as the holes.
+        let slot = polygon(&plate.slot_outline(model.holes.pins), 0.5 * model.holes.pins, chord);
+        rings.extend((!slot.is_empty()).then(|| slot.into_iter().rev().collect()));
         let flat: Vec<[f64; 2]> = rings.iter().flatten().map(|p| [p.re, p.im]).collect();
         let total = flat.len();
         let starts: Vec<usize> =

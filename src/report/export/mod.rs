@@ -7,8 +7,8 @@
 //!
 //! | format | contents | module |
 //! |---|---|---|
-//! | `svg`, `svg-plates` | drawings, one unit of the view box a millimetre | `svg` |
-//! | `dxf`, `dxf-plates` | AutoCAD 2000 drawings, `$INSUNITS` millimetres | `dxf`, `drafting`, `marks` |
+//! | `svg`, `svg-plates` | drawings, one unit of the view box a millimetre | `svg`, `skeleton` |
+//! | `dxf`, `dxf-plates` | AutoCAD 2000 drawings, `$INSUNITS` millimetres | `dxf`, `drafting`, `marks`, `skeleton` |
 //! | `stl` | the plates as closed bodies, laid out side by side | `mesh`, `stl` |
 //! | `scad` | an OpenSCAD script with every size as a parameter | `openscad` |
 //! | `cut-list`, `cut-list-csv` | hole distances and sizes of each plate | `cut_list` |
@@ -27,6 +27,7 @@ mod mesh;
 mod model;
 mod openscad;
 mod settings;
+mod skeleton;
 mod stl;
 mod subject;
 mod svg;

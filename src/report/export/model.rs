@@ -3,9 +3,8 @@
 use super::holes::Holes;
 use super::settings::{Refusal, Settings};
 use super::{Format, Subject};
-use crate::mechanism::plates::{Link, Placement, Plate};
-use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints, LinkageError, point};
-use crate::mechanism::{OneLoop, Unit};
+use crate::mechanism::plates::{Joint, Link, Parts, Placement, Plate, Sizes, parts};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, LinkageError, LoopJoints, OneLoop, Unit, point};
 use crate::report::body;
 use crate::report::scene::{Bounds, circuits_through, middle_position};
 use crate::report::text::{brief, exact};
@@ -28,7 +27,9 @@ pub(super) struct Model<'a> {
     pub(super) subject: &'a Subject,
     pub(super) settings: &'a Settings,
     /// The linkage in millimetres.
-    pub(super) linkage: FourBar,
+    pub(super) linkage: OneLoop,
+    /// Its parts; `None` if the loop of a slider is open in the motion, so that its slot has no length.
+    pub(super) parts: Option<Parts>,
     /// The length of one unit of the file in millimetres, at this scale.
     pub(super) mm_per_unit: f64,
     pub(super) target: Vec<Complex>,
@@ -65,9 +66,8 @@ impl<'a> Model<'a> {
             assumed.push(("unit", "no unit is given: 1 in the file is 1 mm".to_owned()));
         }
         let mm_per_unit = settings.scale() * unit.map_or(1.0, |unit| unit.factor_to(Unit::Mm));
-        let Some(linkage) = subject.linkage.four_bar() else { return Err(no_plates(&subject.linkage)) };
-        let linkage = scaled(linkage, mm_per_unit)?;
-        let longest = longest(&linkage);
+        let linkage = scaled_loop(&subject.linkage, mm_per_unit)?;
+        let longest = linkage.longest();
         if !LONGEST_MM.contains(&longest) {
             return Err(Refusal::about(
                 settings,
@@ -79,7 +79,8 @@ impl<'a> Model<'a> {
         let target: Vec<Complex> = subject.target.iter().map(|p| point(*p) * mm_per_unit).collect();
         // Written so that NaN is too far.
         let too_far = |p: &Complex| !(p.re.abs() <= FARTHEST_MM && p.im.abs() <= FARTHEST_MM);
-        if target.iter().chain(&[linkage.crank_pivot(), linkage.follower_pivot()]).any(too_far) {
+        let pivots: Vec<Complex> = linkage.pivots().collect();
+        if target.iter().chain(&pivots).any(too_far) {
             return Err(Refusal::about(
                 settings,
                 "scale",
@@ -88,7 +89,8 @@ impl<'a> Model<'a> {
             ));
         }
 
-        let nearest = nearest_holes(&linkage);
+        let largest = if unit.is_some() { HOLE_MM } else { HOLE_SHARE * longest };
+        let usual_hole = usual_hole(&linkage, subject, largest);
         let mut default = |key: &'static str, set: Option<f64>, value: f64| {
             set.unwrap_or_else(|| {
                 let value = rounded_down(value);
@@ -96,8 +98,7 @@ impl<'a> Model<'a> {
                 value
             })
         };
-        let largest = if unit.is_some() { HOLE_MM } else { HOLE_SHARE * longest };
-        let hole = default("hole_mm", settings.hole_mm, largest.min(HOLE_BESIDE * nearest));
+        let hole = default("hole_mm", settings.hole_mm, usual_hole);
         let margin = default("margin_mm", settings.margin_mm, hole);
         let kerf = settings.kerf_mm.unwrap_or(0.0);
         let thickness = default("thickness_mm", settings.thickness_mm, 0.75 * hole);
@@ -121,11 +122,13 @@ impl<'a> Model<'a> {
         let first = subject.positions.first().copied().unwrap_or_else(|| middle_position(linkage));
         let all = std::iter::once(first).chain(subject.positions.iter().copied());
         let circuits = circuits_through(linkage, all, settings.samples());
+        let parts = Parts::new(linkage, Sizes { hole, margin }, &subject.motion);
         let curves = circuits.iter().map(|c| c.iter().map(|j| j.coupler_point).collect()).collect();
         Ok(Model {
             subject,
             settings,
             linkage,
+            parts,
             mm_per_unit,
             target,
             wanted,
@@ -141,10 +144,10 @@ impl<'a> Model<'a> {
     }
 
     /// Returns the frame of the body at a position; `None` without a body.
-    pub(super) fn body(&self, joints: &Joints) -> Option<Arms> {
+    pub(super) fn body(&self, at: &LoopJoints) -> Option<Arms> {
         let [tip, corner, _] = *self.wanted.first()?;
-        let angle = body::generated(joints.follower_pin - joints.crank_pin, self.subject.frame_deg?);
-        Some(arms(joints.coupler_point, angle, (tip - corner).norm()))
+        let angle = body::generated(at.coupler, self.subject.frame_deg?);
+        Some(arms(at.joints.coupler_point, angle, (tip - corner).norm()))
     }
 
     /// Returns the assumptions that matter for a format, one sentence each.
@@ -157,10 +160,31 @@ impl<'a> Model<'a> {
             let sizes: Vec<&str> = sizes.into_iter().map(|(_, note)| note.as_str()).collect();
             notes.push(format!("by default {}", sizes.join(", ")));
         }
+        if format.has_plates() {
+            notes.extend(self.slot_note());
+        }
         if format == Format::DxfPlates && self.settings.marks.is_none() {
             notes.push("the layer MARK holds names to engrave; marks=no leaves it out".to_owned());
         }
         notes
+    }
+
+    /// Returns the description of the slot of a slider; `None` of a four-bar.
+    fn slot_note(&self) -> Option<String> {
+        let parts = self.parts.as_ref()?;
+        let (guide, slot) = (parts.guide()?, parts.slot()?);
+        let mut note = format!(
+            "the block runs on guide pins E and F, {} mm apart, in a slot of the {}, {} mm wide and {} mm long between the \
+             centres of its ends S and T",
+            brief(2.0 * guide.half, 4),
+            slot.link.name(),
+            brief(self.holes.pins, 4),
+            brief(slot.length(), 6)
+        );
+        if parts.undrilled() == Some(Joint::P) {
+            note.push_str("; P lies in the slot and has no hole");
+        }
+        Some(note)
     }
 
     /// Returns a heading such as `my-path, candidate 1 of 5, lengths in mm, 1 in the file is 25.4 mm`; foreign text in
@@ -176,9 +200,9 @@ impl<'a> Model<'a> {
 
     /// Returns the position that is drawn: at the crank angle of the settings, otherwise at the first target point that
     /// is reached, otherwise in the middle of the motion.
-    pub(super) fn pose(&self) -> Result<Joints, Refusal> {
-        let Some(angle) = self.settings.crank_deg else { return self.start().map(|(_, joints)| joints) };
-        self.linkage.position(angle.to_radians()).joints().ok_or_else(|| {
+    pub(super) fn pose(&self) -> Result<LoopJoints, Refusal> {
+        let Some(angle) = self.settings.crank_deg else { return self.start().map(|(_, at)| at) };
+        self.linkage.joints_with(angle.to_radians(), self.linkage.assembly()).ok_or_else(|| {
             let help = match self.start() {
                 Ok(((other, _), _)) => {
                     let other = brief(other.to_degrees(), 4);
@@ -193,16 +217,27 @@ impl<'a> Model<'a> {
     }
 
     /// Returns the crank angle (radians), the assembly and the joints at which drawings start.
-    pub(super) fn start(&self) -> Result<((f64, AssemblyMode), Joints), Refusal> {
+    pub(super) fn start(&self) -> Result<((f64, AssemblyMode), LoopJoints), Refusal> {
         let middle = middle_position(self.linkage);
         let mut tried = self.subject.positions.iter().copied().chain([middle]);
         let found = tried.find_map(|(angle, assembly)| {
-            Some(((angle, assembly), self.linkage.position_with(angle, assembly).joints()?))
+            Some(((angle, assembly), self.linkage.joints_with(angle, assembly)?))
         });
         found.ok_or_else(|| {
+            let help = match self.parts {
+                Some(_) => "its plates can be exported: svg-plates, dxf-plates, stl, cut-list",
+                None => "choose lengths with which its loop closes; toml and json can be exported",
+            };
+            Refusal::new("the links of this linkage cannot be joined: there is no position to draw", help)
+        })
+    }
+
+    /// Returns the parts.
+    pub(super) fn parts(&self) -> Result<&Parts, Refusal> {
+        self.parts.as_ref().ok_or_else(|| {
             Refusal::new(
-                "the links of this linkage cannot be joined: there is no position to draw",
-                "its plates can be exported: svg-plates, dxf-plates, stl, cut-list",
+                "the loop of this linkage is open in its motion, so the slot of its slider has no length",
+                "choose lengths with which its loop closes; toml and json can be exported",
             )
         })
     }
@@ -210,9 +245,9 @@ impl<'a> Model<'a> {
     /// Returns the four plates in their final sizes, each with its place in the layout (with room for the kerf): one
     /// below another, on a sheet in as many columns as that takes. The tool's paths begin at the sheet's corner.
     pub(super) fn plates(&self) -> Result<Vec<(Plate, Placement)>, Refusal> {
-        self.holes.check(&self.linkage, self.settings)?;
-        let plates =
-            Link::ALL.map(|link| Plate::of(&self.linkage, link, self.holes.radius(link, self.margin)));
+        let parts = self.parts()?;
+        self.holes.check(parts, self.settings)?;
+        let plates = parts.plates(|link| self.holes.radius(link, self.margin));
         let sizes: Vec<Complex> = plates.iter().map(|plate| plate.bounds()[1] - plate.bounds()[0]).collect();
         let corners = match self.settings.sheet_mm {
             None => in_columns(&sizes, self.gap, f64::INFINITY),
@@ -269,6 +304,11 @@ impl<'a> Model<'a> {
         0.5 * (self.holes.of(link, joints) - self.kerf)
     }
 
+    /// Returns the width of a slot along which the tool's centre moves: half the kerf nearer on each side.
+    pub(super) fn cut_slot(&self) -> f64 {
+        self.holes.pins - self.kerf
+    }
+
     /// Returns the sizes of the holes at A, if they are for a motor, with a comma before them.
     pub(super) fn motor_holes(&self) -> String {
         let Holes { motor, boss, .. } = self.holes;
@@ -313,18 +353,6 @@ pub(super) fn scaled_loop(linkage: &OneLoop, factor: f64) -> Result<OneLoop, Ref
     linkage.scaled(factor).map_err(|e| too_large(&e, factor))
 }
 
-/// Returns the refusal of a kind that is not drawn or cut yet.
-fn no_plates(linkage: &OneLoop) -> Refusal {
-    let kind = linkage.kind().name();
-    let message =
-        format!("a {kind} is exported as toml, json or csv alone: drawings and plates are of four-bars");
-    Refusal::new(message, "choose one of those formats; linkwright analyze draws it (--plot)")
-}
-
-pub(super) fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, Refusal> {
-    linkage.scaled(factor).map_err(|e| too_large(&e, factor))
-}
-
 fn too_large(error: &LinkageError, factor: f64) -> Refusal {
     Refusal::new(
         format!("scaled {} times, this is no linkage: {error}", exact(factor)),
@@ -332,13 +360,25 @@ fn too_large(error: &LinkageError, factor: f64) -> Refusal {
     )
 }
 
-fn longest(linkage: &FourBar) -> f64 {
-    linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
+/// Returns the default diameter of holes, at most `largest`: less where holes are near each other or near a slot.
+fn usual_hole(linkage: &OneLoop, subject: &Subject, largest: f64) -> f64 {
+    match linkage {
+        OneLoop::FourBar(linkage) => largest.min(HOLE_BESIDE * nearest_holes(linkage)),
+        _ => {
+            let found = parts::largest_hole(linkage, &subject.motion, (largest, 1.0 / HOLE_BESIDE));
+            // Without room for any hole, drawings have one all the same, and plates are refused.
+            found.filter(|hole| *hole > 0.0).unwrap_or(largest)
+        }
+    }
 }
 
 /// Returns the names of each pair of distinct holes of a plate with their distance.
 pub(super) fn hole_distances(plate: &Plate) -> Vec<(String, String, f64)> {
-    let holes = plate.distinct_holes();
+    distances(&plate.distinct_holes())
+}
+
+/// Returns the names of each pair of places with their distance.
+pub(super) fn distances(holes: &[(String, Complex)]) -> Vec<(String, String, f64)> {
     let mut pairs = Vec::new();
     for (i, (from, at)) in holes.iter().enumerate() {
         for (to, there) in &holes[i + 1..] {

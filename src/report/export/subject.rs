@@ -2,12 +2,14 @@
 
 use crate::files::linkage_file::{Carried, LinkageFile};
 use crate::files::name;
-use crate::mechanism::AssemblyMode;
-use crate::mechanism::{OneLoop, Unit};
+use crate::judge::practicality::Sweep;
+use crate::mechanism::plates::Stretch;
+use crate::mechanism::{AssemblyMode, OneLoop, Unit};
 use crate::record::{Candidate, Record};
 use crate::report::scene::positions_at;
 use crate::report::text::clean;
 use crate::report::words::standing;
+use crate::task::Problem;
 
 /// A linkage to export.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +28,8 @@ pub struct Subject {
     pub closed: bool,
     /// The crank angle (radians) and assembly at each target point.
     pub positions: Vec<(f64, AssemblyMode)>,
+    /// The motion for which the slot of a slider is made; not needed of a four-bar.
+    pub motion: Vec<Stretch>,
     /// In a motion: the angle from C -> D to the body's x axis, degrees.
     pub frame_deg: Option<f64>,
     /// The body or the function that moves with its links; `None` in a path.
@@ -48,6 +52,7 @@ impl Subject {
             target: path.points.clone(),
             closed: path.closed,
             positions,
+            motion: motion_of(record, candidate),
             frame_deg: candidate.frame_deg,
             carried: Carried::of(candidate),
             body_deg: path
@@ -59,15 +64,17 @@ impl Subject {
     }
 
     /// Returns the subject of a linkage without a run.
-    pub fn of_linkage(file: &LinkageFile) -> Self {
+    pub fn of_linkage<L: Into<OneLoop> + Copy>(file: &LinkageFile<L>) -> Self {
+        let linkage = file.linkage.into();
         Subject {
             name: file.name.clone(),
             standing: "a linkage file".to_owned(),
             unit: file.unit,
-            linkage: file.linkage.into(),
+            linkage,
             target: Vec::new(),
             closed: false,
             positions: Vec::new(),
+            motion: Sweep::of_linkage(linkage).map_or(Vec::new(), |sweep| sweep.stretches),
             frame_deg: None,
             carried: None,
             body_deg: Vec::new(),
@@ -84,4 +91,14 @@ impl Subject {
     pub fn legal_name(&self) -> String {
         name::legal(&self.name, "linkage")
     }
+}
+
+/// Returns the motion of a candidate with a slider, as it is examined for building; nothing of a four-bar.
+fn motion_of(record: &Record, candidate: &Candidate) -> Vec<Stretch> {
+    if candidate.linkage.four_bar().is_some() {
+        return Vec::new();
+    }
+    let problem = Problem::new(record.problem.resolved.clone()).ok();
+    let sweep = problem.and_then(|problem| Sweep::of_candidate(&problem, candidate));
+    sweep.map_or(Vec::new(), |sweep| sweep.stretches)
 }

@@ -1,9 +1,10 @@
 //! SVG drawings in true millimetres: width and height in mm, one unit of the view box a millimetre, y turned down.
 
 use super::model::Model;
-use crate::mechanism::plates::{Edge, Placement, Plate};
-use crate::mechanism::{Complex, Joints};
-use crate::report::scene::{Bounds, all_joints};
+use super::skeleton::Skeleton;
+use crate::mechanism::plates::{Edge, Placement, Plate, Slot};
+use crate::mechanism::{Complex, LoopJoints};
+use crate::report::scene::Bounds;
 use crate::report::text::xml;
 
 const LINKS: &str = "#34495e";
@@ -49,7 +50,8 @@ impl Page {
         self.push(&format!(r#"<path {attributes} d="M{}{close}"/>"#, points.join("L")));
     }
 
-    fn outline(&mut self, edges: &[Edge]) {
+    fn outline(&mut self, id: &str, edges: &[Edge]) {
+        let id = if id.is_empty() { String::new() } else { format!(r#"id="{id}" "#) };
         let start = edges.first().map(|edge| format!("M{}", self.at(edge.from())));
         let step = |edge: &Edge| match *edge {
             Edge::Line { to, .. } => format!("L{}", self.at(to)),
@@ -60,7 +62,7 @@ impl Page {
             }
         };
         let data: String = start.into_iter().chain(edges.iter().map(step)).collect();
-        self.push(&format!(r#"<path d="{data}Z"/>"#));
+        self.push(&format!(r#"<path {id}d="{data}Z"/>"#));
     }
 
     fn circle(&mut self, id: &str, centre: Complex, radius: f64) {
@@ -109,12 +111,13 @@ fn mm(x: f64) -> String {
 }
 
 /// Draws the skeleton, coupler curve, joints and target.
-pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
-    let linkage = &model.linkage;
-    let [a, b, c, d, p] = all_joints(linkage, joints);
-    let all = [a, b, c, d, p].into_iter();
-    let all: Vec<Complex> =
-        all.chain(model.curves.iter().flatten().copied()).chain(model.target.iter().copied()).collect();
+pub(super) fn drawing(model: &Model<'_>, at: &LoopJoints) -> String {
+    let skeleton = Skeleton::of(model, at);
+    let all: Vec<Complex> = skeleton
+        .points()
+        .chain(model.curves.iter().flatten().copied())
+        .chain(model.target.iter().copied())
+        .collect();
     let bare = Page::around(all.iter().copied(), 0.0).size();
     let extent = bare.re.max(bare.im);
     let mut page = Page::around(all, 0.04 * extent + model.holes.pins);
@@ -125,20 +128,37 @@ pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
     };
 
     page.push(&group("skeleton", &line(LINKS, &thick)));
-    page.path(&[a, b], false, &format!(r#"id="ground" stroke-dasharray="{0} {0}""#, mm(0.012 * extent)));
-    page.path(&[a, c], false, r#"id="crank""#);
-    page.path(&[b, d], false, r#"id="follower""#);
-    page.path(&[c, d, p], true, r#"id="coupler""#);
+    let dashes = mm(0.012 * extent);
+    if let Some(ground) = skeleton.ground {
+        page.path(&ground, false, &format!(r#"id="ground" stroke-dasharray="{dashes} {dashes}""#));
+    }
+    page.path(&skeleton.crank, false, r#"id="crank""#);
+    let is_arm = skeleton.line.is_some();
+    if let Some(follower) = skeleton.follower {
+        page.path(&follower, false, if is_arm { r#"id="arm""# } else { r#"id="follower""# });
+    }
+    page.path(&skeleton.coupler, true, r#"id="coupler""#);
     page.push("</g>");
+    if let Some(line_ends) = skeleton.line {
+        page.push(&group("slider", &line(LINKS, &thin)));
+        let id = if skeleton.ground.is_none() { "rail" } else { "rod" };
+        page.path(
+            &line_ends,
+            false,
+            &format!(r#"id="{id}" stroke-dasharray="{dashes} {}""#, mm(0.004 * extent)),
+        );
+        page.outline("slot", &skeleton.slot);
+        page.path(&skeleton.block, true, r#"id="block""#);
+        page.push("</g>");
+    }
     page.push(&group("curve", &line(CURVE, &thin)));
     for curve in &model.curves {
         page.path(curve, true, "");
     }
     page.push("</g>");
     page.push(&group("joints", &line(LINKS, &thin)));
-    let named = [("A", a), ("B", b), ("C", c), ("D", d), ("P", p)];
-    for (name, at) in named {
-        page.circle(name, at, 0.5 * model.holes.pins);
+    for (name, at) in &skeleton.joints {
+        page.circle(name, *at, 0.5 * model.holes.pins);
     }
     page.push("</g>");
     if !model.target.is_empty() {
@@ -151,14 +171,14 @@ pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
         }
         page.push("</g>");
     }
-    if let Some(frame) = model.body(joints) {
+    if let Some(frame) = model.body(at) {
         page.push(&group("body", &line(CURVE, &thick)));
         page.path(&frame, false, "");
         page.push("</g>");
     }
     let aside = 0.5 * model.holes.pins + 0.2 * letter;
-    let label = |(name, at): (&str, Complex)| (at + Complex::new(aside, aside), name.to_owned());
-    page.labels(letter, "", named.map(label));
+    let label = |(name, at): &(&str, Complex)| (at + Complex::new(aside, aside), (*name).to_owned());
+    page.labels(letter, "", skeleton.joints.iter().map(label));
     page.document(&model.subject.title(), &model.heading())
 }
 
@@ -175,7 +195,12 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String
         let name = plate.link.name();
         page.push(&format!(r#"<g id="{name}" fill="none" stroke="{CURVE}" stroke-width="{thin}">"#));
         let edges: Vec<Edge> = model.cut(plate).outline().iter().map(|edge| edge.placed(at)).collect();
-        page.outline(&edges);
+        page.outline("", &edges);
+        let slot = plate.slot_outline(model.cut_slot());
+        if !slot.is_empty() {
+            let placed: Vec<Edge> = slot.iter().map(|edge| edge.placed(at)).collect();
+            page.outline(&format!("{name}-slot"), &placed);
+        }
         for (joints, hole) in plate.distinct_holes() {
             page.circle(&format!("{name}-{joints}"), at.of(hole), model.cut_hole(plate.link, &joints));
         }
@@ -188,7 +213,12 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String
             (at.of(hole) + Complex::new(0.0, above), joints)
         })
     });
-    page.labels(letter, r#" text-anchor="middle""#, holes);
+    let ends = plates.iter().flat_map(|(plate, at)| {
+        let above = Complex::new(0.0, 0.5 * model.holes.pins + 0.25 * letter);
+        let ends = plate.slot.into_iter().flat_map(|slot| slot.ends.into_iter().zip(Slot::LETTERS));
+        ends.map(move |(end, name)| (at.of(end) + above, name.to_owned()))
+    });
+    page.labels(letter, r#" text-anchor="middle""#, holes.chain(ends));
     let heading = format!("{}, plates cut with a kerf of {} mm", model.heading(), mm(model.kerf));
     page.document(&model.subject.title(), &heading)
 }

@@ -5,7 +5,7 @@ use super::page::{list, paragraph, section};
 use super::table::{Cell, Column, tabulated};
 use crate::judge::practicality::clearance::PivotDistance;
 use crate::judge::practicality::sensitivity::{Dimension, Sensitivity};
-use crate::judge::practicality::{Build, Practicality, usual_tolerance};
+use crate::judge::practicality::{Build, Practicality, Sweep, usual_tolerance};
 use crate::record::{Candidate, Record};
 use crate::report::Colour;
 use crate::report::practicality::{Words, degrees, held, objection, shift};
@@ -41,8 +41,7 @@ const NOTES: &str = "linkwright build RESULT says the same of other candidates, 
 
 fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<Markup> {
     let unit = record.problem.unit;
-    let linkage = c.linkage.four_bar()?;
-    let hole = Build::usual_hole(linkage, unit);
+    let hole = Build::usual_hole_of(&Sweep::of_candidate(problem, c)?, unit)?;
     let found = Practicality::of_candidate(problem, c, Build::new(hole, hole))?;
     let words = Words { unit, colour: Colour::Never };
     let title = match c.rank {
@@ -59,7 +58,7 @@ fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<Markup> 
         @if let Some(distances) = &found.distances { (joints(distances, hole)) }
         @if let Some(felt) = &found.sensitivity {
             (sensitivities(felt, found.kind))
-            (paragraph("", &words.together(felt, &found, usual_tolerance(linkage, unit))))
+            (paragraph("", &words.together(felt, &found, usual_tolerance(c.linkage, unit))))
         }
         (paragraph("notes", NOTES))
     })
@@ -91,7 +90,7 @@ fn sensitivities(felt: &Sensitivity, kind: TaskKind) -> Markup {
         ("rms", true, &|d| Cell::number(None, significant(d.rms, 3))),
         ("most", true, &|d| Cell::number(None, significant(d.worst, 3))),
     ];
-    let all = felt.dimensions.iter().chain([&felt.ground]);
+    let all = felt.dimensions.iter().chain(&felt.ground);
     let rows = all.map(|d| (None, Cell::words(d.name), d));
     html! {
         details {

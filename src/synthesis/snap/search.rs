@@ -204,7 +204,7 @@ fn to_snap(problem: &Problem, candidate: &Candidate, request: &Request) -> Vec<L
         Length::ALL.into_iter().filter(|length| request.lengths.contains(length)).filter(free).collect();
     if let Some(felt) = sensitivity_of(problem, candidate) {
         let of = |length: &Length| match length {
-            Length::Ground => felt.ground.rms,
+            Length::Ground => felt.ground.as_ref().map_or(0.0, |ground| ground.rms),
             // d and e each count as both if the coupler point is measured along and across.
             _ => felt.dimensions.iter().find(|d| d.name == length.key()).map_or(f64::INFINITY, |d| d.rms),
         };

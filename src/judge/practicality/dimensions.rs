@@ -1,0 +1,198 @@
+//! The dimensions of each kind of linkage, whose errors shift the path, with the derivatives of P by them.
+//!
+//! | kind | dimensions |
+//! |---|---|
+//! | four-bar | Ax, Ay, Bx, By, a, b, c, d, e; coupler_x and coupler_y in place of d and e where P lies nearly on the line C-D |
+//! | slider-crank | Ax, Ay, a, b, rail_from, rail_to, coupler_x, coupler_y |
+//! | inverted slider-crank | Ax, Ay, Bx, By, a, offset, coupler_x, coupler_y |
+//!
+//! rail_from and rail_to move the line at the least and at the greatest place of D that is looked at to its left, the other
+//! end held: with L between these places y_1 and y_2, a point at y moves by (y_2 - y)/L and by (y - y_1)/L. Errors of the
+//! line are in this way lengths, as all others, and do not depend on the point by which a file gives it.
+
+use super::sensitivity::At;
+use crate::mechanism::four_bar::gradient::{follower_gradient, ground_gradient, shape_gradient};
+use crate::mechanism::{Complex, FourBar, InvertedSliderCrank, OneLoop, SliderCrank, SliderLinkage, turned};
+
+/// The largest number of dimensions.
+pub(super) const MOST: usize = 9;
+
+/// The derivatives by the dimensions, zero beyond their number, and by the crank angle.
+pub(super) type Columns = ([Complex; MOST], Complex);
+
+/// Distance of P from the line C-D, as a part of the larger of d and e, below which P counts as on that line.
+pub const FLAT: f64 = 0.1;
+
+const ZERO: Complex = Complex::new(0.0, 0.0);
+
+/// The dimensions of a kind of linkage.
+pub(super) trait Dimensions: Sync {
+    /// Returns their names.
+    fn names(&self) -> Vec<&'static str>;
+
+    /// Computes dP by them and by the crank angle at a position; `None` at a toggle or if the loop is open.
+    fn columns(&self, at: &At) -> Option<Columns>;
+
+    /// Computes the turn of the direction from which crank angles of `offset = "ground"` count, by each dimension.
+    fn of_ground(&self) -> [f64; MOST];
+
+    /// Computes the shift by |AB| from those by the dimensions, B moved along A -> B; `None` without a ground link.
+    fn by_ground(&self, shifts: &[Complex]) -> Option<Complex>;
+}
+
+/// Returns the dimensions of a linkage for its path at some positions.
+pub(super) fn of_path(linkage: &OneLoop, positions: &[At]) -> Box<dyn Dimensions> {
+    match *linkage {
+        OneLoop::FourBar(linkage) => Box::new(OfFourBar { linkage, flat: is_flat(&linkage) }),
+        OneLoop::SliderCrank(linkage) => Box::new(OfSliderCrank::new(linkage, positions)),
+        OneLoop::InvertedSliderCrank(linkage) => Box::new(linkage),
+    }
+}
+
+/// Returns whether the coupler of a four-bar is measured by coupler_x and coupler_y.
+pub fn is_flat(linkage: &FourBar) -> bool {
+    linkage.coupler_offset().im.abs() < FLAT * linkage.crank_side().max(linkage.follower_side())
+}
+
+/// The turn of the line A -> B by Ax, Ay, Bx and By, the first four dimensions.
+fn of_pivots(a: Complex, b: Complex) -> [f64; MOST] {
+    let mut by = [0.0; MOST];
+    by[..4].copy_from_slice(&ground_gradient(a, b));
+    by
+}
+
+/// The shift by |AB| from those by Bx and By, the third and the fourth dimension.
+fn along_ground(shifts: &[Complex], ground_angle: f64) -> Complex {
+    let ground = Complex::from_polar(1.0, ground_angle);
+    shifts[2] * ground.re + shifts[3] * ground.im
+}
+
+/// The dimensions of a four-bar.
+struct OfFourBar {
+    linkage: FourBar,
+    flat: bool,
+}
+
+impl Dimensions for OfFourBar {
+    fn names(&self) -> Vec<&'static str> {
+        let [d, e] = if self.flat { ["coupler_x", "coupler_y"] } else { ["d", "e"] };
+        vec!["Ax", "Ay", "Bx", "By", "a", "b", "c", d, e]
+    }
+
+    fn columns(&self, at: &At) -> Option<Columns> {
+        let linkage = &self.linkage;
+        if !self.flat {
+            return linkage.with_assembly(at.assembly).gradient(at.crank_angle);
+        }
+        let frame = linkage.frame(at.crank_angle, at.assembly)?;
+        let gradient = shape_gradient(&frame, linkage.crank(), linkage.coupler(), linkage.coupler_offset())?;
+        Some((gradient.shape, gradient.crank_angle))
+    }
+
+    fn of_ground(&self) -> [f64; MOST] {
+        of_pivots(self.linkage.crank_pivot(), self.linkage.follower_pivot())
+    }
+
+    fn by_ground(&self, shifts: &[Complex]) -> Option<Complex> {
+        Some(along_ground(shifts, self.linkage.ground_angle()))
+    }
+}
+
+/// The dimensions of a four-bar whose output counts: the derivatives are those of the follower's angle from the ground
+/// line, degrees, as real parts.
+pub(super) struct OfOutput(pub(super) FourBar);
+
+impl Dimensions for OfOutput {
+    fn names(&self) -> Vec<&'static str> {
+        vec!["Ax", "Ay", "Bx", "By", "a", "b", "c", "d", "e"]
+    }
+
+    fn columns(&self, at: &At) -> Option<Columns> {
+        let linkage = &self.0;
+        let frame = linkage.frame(at.crank_angle, at.assembly)?;
+        let (mut by_shape, by_crank) = follower_gradient(&frame, linkage.crank(), linkage.follower())?;
+        let by_ground = ground_gradient(linkage.crank_pivot(), linkage.follower_pivot());
+        by_shape.iter_mut().zip(by_ground).for_each(|(by, ground)| *by -= ground);
+        let degrees = |radians: f64| Complex::new(radians.to_degrees(), 0.0);
+        Some((by_shape.map(degrees), degrees(by_crank)))
+    }
+
+    fn of_ground(&self) -> [f64; MOST] {
+        of_pivots(self.0.crank_pivot(), self.0.follower_pivot())
+    }
+
+    fn by_ground(&self, shifts: &[Complex]) -> Option<Complex> {
+        Some(along_ground(shifts, self.0.ground_angle()))
+    }
+}
+
+/// The dimensions of a slider-crank.
+struct OfSliderCrank {
+    linkage: SliderCrank,
+    /// The least and the greatest place of D, some length apart.
+    ends: [f64; 2],
+}
+
+impl OfSliderCrank {
+    fn new(linkage: SliderCrank, positions: &[At]) -> Self {
+        let place = |at: &At| Some(linkage.position_with(at.crank_angle, at.assembly).joints()?.place);
+        let [low, high] = crate::mechanism::least_and_greatest(positions.iter().filter_map(place));
+        // Of one position: a rail as long as the links, which is tilted about nothing in particular.
+        let short = linkage.longest();
+        let ends = match high - low > 1e-9 * short {
+            true => [low, high],
+            false if low.is_finite() => [low - 0.5 * short, low + 0.5 * short],
+            false => [0.0, short],
+        };
+        OfSliderCrank { linkage, ends }
+    }
+}
+
+impl Dimensions for OfSliderCrank {
+    fn names(&self) -> Vec<&'static str> {
+        vec!["Ax", "Ay", "a", "b", "rail_from", "rail_to", "coupler_x", "coupler_y"]
+    }
+
+    fn columns(&self, at: &At) -> Option<Columns> {
+        let linkage = SliderLinkage::with_assembly(self.linkage, at.assembly);
+        let (shape, by_crank) = linkage.gradient(at.crank_angle)?;
+        let [ax, ay, a, b, qx, qy, turn, x, y] = shape.map(|column| column.coupler_point);
+        let across = turned(linkage.line_direction());
+        let aside = qx * across.re + qy * across.im;
+        let [from, to] = self.ends;
+        let per = 1.0 / (to - from);
+        let rail_from = (aside * to - turn) * per;
+        let rail_to = (turn - aside * from) * per;
+        Some(([ax, ay, a, b, rail_from, rail_to, x, y, ZERO], by_crank.coupler_point))
+    }
+
+    fn of_ground(&self) -> [f64; MOST] {
+        let per = 1.0 / (self.ends[1] - self.ends[0]);
+        [0.0, 0.0, 0.0, 0.0, -per, per, 0.0, 0.0, 0.0]
+    }
+
+    fn by_ground(&self, _: &[Complex]) -> Option<Complex> {
+        None
+    }
+}
+
+impl Dimensions for InvertedSliderCrank {
+    fn names(&self) -> Vec<&'static str> {
+        vec!["Ax", "Ay", "Bx", "By", "a", "offset", "coupler_x", "coupler_y"]
+    }
+
+    fn columns(&self, at: &At) -> Option<Columns> {
+        let (shape, by_crank) = SliderLinkage::with_assembly(*self, at.assembly).gradient(at.crank_angle)?;
+        let mut columns = [ZERO; MOST];
+        columns.iter_mut().zip(shape).for_each(|(by, column)| *by = column.coupler_point);
+        Some((columns, by_crank.coupler_point))
+    }
+
+    fn of_ground(&self) -> [f64; MOST] {
+        of_pivots(SliderLinkage::crank_pivot(self), self.block_pivot())
+    }
+
+    fn by_ground(&self, shifts: &[Complex]) -> Option<Complex> {
+        Some(along_ground(shifts, self.ground_angle()))
+    }
+}

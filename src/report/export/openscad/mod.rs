@@ -1,0 +1,70 @@
+//! An OpenSCAD script: every length is a parameter, the plates are laid out or assembled at a crank angle.
+
+mod four_bar;
+mod sliders;
+
+use super::model::Model;
+use super::settings::Refusal;
+use crate::files::generator::mark;
+use crate::mechanism::OneLoop;
+use crate::report::text::exact;
+
+/// A parameter: name, value, and what it is.
+type Parameter = (&'static str, f64, &'static str);
+
+/// The part of a script that differs from kind to kind.
+struct Script {
+    /// The meaning of t1.
+    t1: &'static str,
+    /// The parameters of the linkage.
+    numbers: Vec<Parameter>,
+    /// The part that draws.
+    body: String,
+}
+
+/// Returns the script. Foreign text is in a comment on one line, cleaned of everything that would end the comment.
+pub(super) fn script(model: &Model<'_>) -> Result<String, Refusal> {
+    // Only a linkage whose plates can be made has a script.
+    model.plates()?;
+    let ((angle, assembly), _) = model.start()?;
+    let (crank_deg, assembly) = match model.settings.crank_deg {
+        Some(angle) => {
+            model.pose()?;
+            (angle, model.linkage.assembly())
+        }
+        None => (angle.to_degrees(), assembly),
+    };
+    let parts = model.parts()?;
+    let own = match &model.linkage {
+        OneLoop::FourBar(linkage) => four_bar::script(linkage),
+        OneLoop::SliderCrank(linkage) => sliders::slider_crank(linkage, parts),
+        OneLoop::InvertedSliderCrank(linkage) => sliders::inverted_slider_crank(linkage, parts),
+    };
+    let common = [
+        ("hole", model.holes.pins, "diameter of the holes"),
+        ("margin", model.margin, "from a hole's edge to the edge of the plate"),
+        ("thickness", model.thickness, "thickness of the plates"),
+        ("gap", model.gap, "between plates that are laid out"),
+        ("crank_deg", crank_deg, "crank angle from the x axis, for the assembly"),
+        ("t1", assembly.sign(), own.t1),
+    ];
+    let chord = ("chord", model.chord, "how far an arc may lie from its polygon");
+    let mut out = format!("// {}\n// {}; every number is a parameter\n\n", model.heading(), mark());
+    out.push_str("view = \"plates\"; // [plates, assembly]\n");
+    for (name, value, about) in common.into_iter().chain(own.numbers).chain([chord]) {
+        let about = if about.is_empty() { String::new() } else { format!(" // {about}") };
+        out.push_str(&format!("{name} = {};{about}\n", exact(value + 0.0)));
+    }
+    let own_size = |set: Option<f64>, usual: &str| set.map_or(usual.to_owned(), exact);
+    let (motor, boss) = (model.settings.motor_hole_mm, model.settings.boss_hole_mm);
+    out.push_str(&format!(
+        "motor_hole = {}; // of the crank at A, for a motor's shaft\n",
+        own_size(motor, "hole")
+    ));
+    out.push_str(&format!(
+        "boss_hole = {}; // of the ground at A, for its boss\n",
+        own_size(boss, "motor_hole")
+    ));
+    out.push_str(&own.body);
+    Ok(out)
+}
