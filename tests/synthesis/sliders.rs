@@ -169,6 +169,21 @@ fn kinds_are_ranked_together_and_the_stride_is_drawn_by_a_slider_crank() {
 }
 
 #[test]
+fn a_door_on_a_rail_is_nearer_to_its_poses_than_on_two_arms() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/examples/up-and-over-door.toml");
+    let mut spec = load_problem(&path, &[]).expect("a problem").spec;
+    spec.solve.advice = false;
+    let record = solved(spec);
+    assert!(verify(&record).is_ok_and(|found| found.is_empty()));
+    let best = &record.candidates[0];
+    assert!(best.accepted && best.linkage.kind() == LoopKind::SliderCrank);
+    assert!(best.error.objective < 557.3 && best.transmission_deg.worst > 38.0, "{}", best.error.objective);
+    assert_closed(best, &record.problem.resolved.task.points, 1500.0);
+    let four_bar = record.candidates.iter().find(|c| c.linkage.kind() == LoopKind::FourBar);
+    assert!(four_bar.is_none_or(|c| c.error.rms > 50.0));
+}
+
+#[test]
 fn a_rail_is_horizontal_and_passes_where_it_is_wanted() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/examples/walking-stride-slider.toml");
     let set = [

@@ -87,11 +87,12 @@ impl Kind for SliderCrank {
     }
 }
 
-/// Returns the crank angles at which the slider turns back: crank and coupler in line, D at b + a or at b - a from A.
+/// Returns the crank angles at which the slider turns back (crank and coupler in line, D at b + a or at b - a from A), and
+/// those at which C is farthest from the line, where the loop is open if it is anywhere.
 fn turns(linkage: &SliderCrank) -> Vec<f64> {
     let (a, b) = (SliderLinkage::crank(linkage), linkage.coupler());
     let (height, line) = (linkage.pivot_height(), linkage.line_direction());
-    let mut angles = Vec::with_capacity(4);
+    let mut angles = vec![line.arg() - 0.5 * PI, line.arg() + 0.5 * PI];
     for reach in [a + b, a - b] {
         let along = ((reach - height) * (reach + height)).max(0.0).sqrt();
         if reach == 0.0 || reach.abs() < height.abs() {
