@@ -103,7 +103,7 @@ fn swept(seed: u64, count: u64) -> impl Iterator<Item = (FourBar, Sweep, Build)>
         let l = linkage(&mut draws, TYPES[(i % 5) as usize]);
         let radius = uniform(&mut draws, 0.02, 0.12) * l.longest_link();
         let build = Build { plate_radius: radius, pin_radius: 0.4 * radius, motor: None };
-        (l, Sweep::of_linkage(&l).expect("it can be joined"), build)
+        (l, Sweep::of_linkage(l).expect("it can be joined"), build)
     })
 }
 
@@ -304,11 +304,11 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
     let slim = Build { plate_radius: 6.0, pin_radius: 3.0, motor: None };
     // The coupler turns around its ground and never comes over it: crank below, follower above, both beside it.
     let l = drag(Complex::new(15.0, 10.0));
-    let found = stack(&l, &Sweep::of_linkage(&l).expect("joined"), slim).expect("there is one");
+    let found = stack(&l, &Sweep::of_linkage(l).expect("joined"), slim).expect("there is one");
     assert_eq!(found.layers, [vec![Link::Crank], vec![Link::Ground, Link::Coupler], vec![Link::Follower]]);
     // A coupler that reaches over it lies above everything, on a crank pin that goes round outside.
     let l = drag(Complex::new(15.0, -60.0));
-    let found = stack(&l, &Sweep::of_linkage(&l).expect("joined"), slim).expect("there is one");
+    let found = stack(&l, &Sweep::of_linkage(l).expect("joined"), slim).expect("there is one");
     assert_eq!(
         found.layers,
         [[Link::Crank], [Link::Ground], [Link::Follower], [Link::Coupler]].map(Vec::from)
@@ -316,10 +316,10 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
     assert_eq!(found.through, [(Joint::C, 1), (Joint::C, 2)]);
     // With plates so broad that this pin, never more than 30 from B, cannot pass, nothing works.
     let broad = Build { plate_radius: 24.0, pin_radius: 8.0, motor: None };
-    assert_eq!(stack(&l, &Sweep::of_linkage(&l).expect("joined"), broad), None);
+    assert_eq!(stack(&l, &Sweep::of_linkage(l).expect("joined"), broad), None);
     // Over a short motion two layers may do.
     let l = drag(Complex::new(15.0, 10.0));
-    let mut short = Sweep::of_linkage(&l).expect("joined");
+    let mut short = Sweep::of_linkage(l).expect("joined");
     short.full_turn = false;
     short.stretches[0].from = 1.9;
     short.stretches[0].to = 2.2;
@@ -334,7 +334,7 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
     )
     .expect("a linkage");
     let build = Build { plate_radius: 4.0, pin_radius: 2.0, motor: None };
-    let found = layering(&Sweep::of_linkage(&crank_rocker).expect("joined"), build).expect("closed");
+    let found = layering(&Sweep::of_linkage(crank_rocker).expect("joined"), build).expect("closed");
     let stack = found.stack.expect("there is one");
     assert_eq!(stack.layers, [vec![Link::Ground], vec![Link::Crank, Link::Follower], vec![Link::Coupler]]);
     assert!(stack.through.is_empty());
@@ -398,7 +398,7 @@ fn cases() -> Vec<(FourBar, Vec<At>)> {
     for i in 0..5 {
         let mut draws = stream(45, i);
         let l = linkage(&mut draws, [LinkageType::CrankRocker, LinkageType::DoubleCrank][(i % 2) as usize]);
-        let at = along(&Sweep::of_linkage(&l).expect("joined"), 14);
+        let at = along(&Sweep::of_linkage(l).expect("joined"), 14);
         cases.push((l, at));
     }
     // Hoeken's: P in line with C and D.
@@ -414,7 +414,7 @@ fn cases() -> Vec<(FourBar, Vec<At>)> {
         side: CouplerSide::Plus,
     })
     .expect("a linkage");
-    let at = along(&Sweep::of_linkage(&hoeken).expect("joined"), 14);
+    let at = along(&Sweep::of_linkage(hoeken).expect("joined"), 14);
     cases.push((hoeken, at));
     cases
 }
@@ -424,7 +424,7 @@ fn each_dimension_moves_the_path_as_much_as_when_it_is_changed_by_a_little() {
     for (l, at) in cases() {
         let step = 1e-6 * l.crank().min(l.ground());
         for crank in [Crank::Settles, Crank::OffsetIsSet, Crank::Stays, Crank::TurnsWithGround] {
-            let found = sensitivity(&l, &at, crank).expect("derivatives");
+            let found = sensitivity(l, &at, crank).expect("derivatives");
             for k in 0..9 {
                 let mut errors = [0.0; 9];
                 errors[k] = step;
@@ -461,7 +461,7 @@ fn the_band_is_that_of_monte_carlo() {
     for (i, (l, at)) in cases().into_iter().enumerate() {
         let sigma = 1e-5 * l.crank().min(l.ground());
         for (crank, n) in [(Crank::Settles, 400), (Crank::OffsetIsSet, 400), (Crank::TurnsWithGround, 1500)] {
-            let found = sensitivity(&l, &at, crank).expect("derivatives");
+            let found = sensitivity(l, &at, crank).expect("derivatives");
             let mut draws = stream(46, i as u64);
             let each = monte_carlo(&mut draws, &l, &at, crank, sigma, n);
             let rms = (each.iter().map(|s| s * s).sum::<f64>() / at.len() as f64).sqrt() / sigma;
@@ -477,7 +477,7 @@ fn the_band_is_that_of_monte_carlo() {
 #[test]
 fn the_ground_row_is_b_moved_along_the_ground_and_the_worst_dimension_has_the_largest_rms() {
     for (l, at) in cases() {
-        let found = sensitivity(&l, &at, Crank::Stays).expect("derivatives");
+        let found = sensitivity(l, &at, Crank::Stays).expect("derivatives");
         let step = 1e-6 * l.ground();
         let along = Complex::from_polar(step, l.ground_angle());
         let mut errors = [0.0; 9];
@@ -495,7 +495,7 @@ fn a_motion_past_a_toggle_is_split_there() {
     let mut draws = stream(47, 0);
     for of in [LinkageType::TripleRocker, LinkageType::DoubleRocker] {
         let l = linkage(&mut draws, of);
-        let sweep = Sweep::of_linkage(&l).expect("joined");
+        let sweep = Sweep::of_linkage(l).expect("joined");
         let both = Sweep {
             stretches: [AssemblyMode::Plus, AssemblyMode::Minus]
                 .map(|assembly| Stretch { assembly, ..sweep.stretches[0] })
@@ -525,7 +525,7 @@ fn a_motor_widens_the_plates_at_its_holes_and_stands_at_a() {
         AssemblyMode::Plus,
     )
     .expect("a linkage");
-    let sweep = Sweep::of_linkage(&l).expect("joined");
+    let sweep = Sweep::of_linkage(l).expect("joined");
     let tolerance = 4.0 * MARGIN * l.longest_link();
     let pins = Build::new(4.0, 3.0);
     let motor = pins.with_motor(Some(6.0), Some(20.0));

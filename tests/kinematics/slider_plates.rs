@@ -20,7 +20,7 @@ fn linkages(seed: u64, count: u64) -> Vec<OneLoop> {
         let (a, x, y) = (uniform(draws, 0.5, 2.0), uniform(draws, -4.0, 8.0), uniform(draws, 1.0, 4.0));
         let (h, pivot) = (uniform(draws, -1.5, 1.5), [uniform(draws, -1.0, 1.0), uniform(draws, -1.0, 1.0)]);
         let far = a + h.abs() + uniform(draws, 0.8, 4.0);
-        if i % 2 == 0 {
+        if i.is_multiple_of(2) {
             let line_deg = uniform(draws, -180.0, 180.0);
             let across = Complex::from_polar(h, (line_deg + 90.0).to_radians());
             let line_point = [pivot[0] + across.re, pivot[1] + across.im];
