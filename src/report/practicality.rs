@@ -9,8 +9,8 @@ use crate::judge::practicality::layers::{Layering, Passing, PinPlate, PlatePair,
 use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
 use crate::judge::practicality::sweep::Stretch;
 use crate::judge::practicality::{Build, Closest, Joint, Practicality};
+use crate::mechanism::Unit;
 use crate::mechanism::plates::{Link, Parts};
-use crate::mechanism::{LoopKind, OneLoop, Unit};
 use crate::task::TaskKind;
 
 /// The number of significant digits of lengths and rates.
@@ -57,14 +57,6 @@ const SIMPLE: &str = "The model is simple: a plate with a slot counts as if it w
     their plates; washers or heads that hold the block on its slot need the room beside it.";
 
 const OPEN: &str = "  The loop is open somewhere in the motion: nothing can be said.\n";
-
-/// Returns the place that the slot of a linkage with a slider can run into, in words.
-pub(crate) fn slot_end(linkage: &OneLoop) -> &'static str {
-    match linkage.kind() {
-        LoopKind::InvertedSliderCrank => "the crank pin C, which the block reaches at a toggle",
-        LoopKind::SliderCrank | LoopKind::FourBar => "the crank's pivot A, which the block reaches",
-    }
-}
 
 /// The sentences, with their lengths in a unit.
 pub(super) struct Words {

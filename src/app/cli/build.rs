@@ -7,9 +7,9 @@ use super::{Ended, refuse, terminal};
 use crate::files::diagnostic::escaped;
 pub use crate::judge::practicality::{Build, usual_tolerance};
 use crate::judge::practicality::{Practicality, Sweep};
-use crate::mechanism::{OneLoop, Unit};
+use crate::mechanism::{LoopKind, OneLoop, Unit};
 use crate::record::Candidate;
-use crate::report::practicality::{practicality_text, slot_end};
+use crate::report::practicality::practicality_text;
 use crate::report::text::clean;
 use crate::task::Problem;
 
@@ -87,4 +87,12 @@ fn no_room(given: &Subject) -> Ended {
         slot_end(&given.linkage)
     ));
     Ended::Bad
+}
+
+/// Returns the place that the slot of a linkage with a slider can run into, in words.
+fn slot_end(linkage: &OneLoop) -> &'static str {
+    match linkage.kind() {
+        LoopKind::InvertedSliderCrank => "the crank pin C, which the block reaches at a toggle",
+        LoopKind::SliderCrank | LoopKind::FourBar => "the crank's pivot A, which the block reaches",
+    }
 }
