@@ -96,8 +96,8 @@ pub mod plan {
     pub const RELAXED_SHARE: u64 = 2;
     /// One part in this many of the evaluations for differential evolution goes to the polish of its best.
     pub const POLISH_SHARE: u64 = 5;
-    /// Where several kinds are searched for: the evaluations of a first look for an exact four-bar, and one part in this many
-    /// of the evaluations for one at linkages with a slider. `benches/sliders`, mixed.
+    /// A search for several kinds first looks for an exact four-bar with so many evaluations, and for an exact linkage with a
+    /// slider with one part in `GLIMPSE_SHARE` of its evaluations. `cargo bench --bench sliders -- mixed` chooses them.
     pub const GLIMPSE: u64 = 1500;
     pub const GLIMPSE_SHARE: u64 = 4;
     /// Number of the other candidates found around a far target's own centre that are brought back to the target.

@@ -11,8 +11,8 @@ use crate::synthesis::Context;
 use crate::synthesis::constants::motion::{CLIMB_DEG, CLIMB_LEAST_DEG, CLIMBED};
 use crate::synthesis::multistart::MIDDLE_FIT;
 use crate::synthesis::tightened::{Tighter, fitted};
-use crate::task::Problem;
 use crate::task::pivot_on::PivotOn;
+use crate::task::{Problem, Timing};
 use rayon::prelude::*;
 
 /// Returns the number of free parameters that are left when all targets are met; 0 if there are equations enough.
@@ -28,9 +28,29 @@ pub(super) fn freedom(problem: &Problem) -> usize {
         let unknowns = free + usize::from(output.given_frame(0.0).is_none()) + of_ranges;
         return unknowns.saturating_sub(task.len());
     }
+    free.saturating_sub(equations(problem))
+}
+
+/// As [`freedom`] of a linkage with a slider, whose unknowns have these bounds, in a path or a motion.
+pub(super) fn freedom_within(problem: &Problem, bounds: &[(f64, f64)]) -> usize {
+    let free = bounds.iter().filter(|(low, high)| low < high).count();
+    free.saturating_sub(equations(problem))
+}
+
+/// Returns the number of equations of a path or a motion: two of a place, of which a free crank angle takes one, and one of
+/// an angle of the body.
+fn equations(problem: &Problem) -> usize {
+    let task = problem.task();
+    let is_free = |j: usize| matches!(task.timing(), Timing::Free) || task.is_untimed(j);
+    let of_places: usize = (0..task.len()).map(|j| if is_free(j) { 1 } else { 2 }).sum();
     let angles = task.body().map_or(&[][..], |body| &body.angles);
-    let equations = task.len() + angles.iter().flatten().count();
-    free.saturating_sub(equations)
+    of_places + angles.iter().flatten().count()
+}
+
+/// Returns whether one exact answer ends a search: where one is asked for, unless it is one of a family, of which the best
+/// transmitting one is wanted.
+pub(super) fn one_is_enough(problem: &Problem, freedom: usize) -> bool {
+    problem.spec().solve.candidates <= 1 && freedom == 0
 }
 
 /// Leads the best exact candidates to better transmission angles, with at most `left` evaluations; returns the evaluations

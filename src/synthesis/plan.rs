@@ -7,7 +7,7 @@
 
 use super::constants::plan::{FAR_OTHERS, GLIMPSE, GLIMPSE_SHARE, LOCAL_SHARE, POLISH_SHARE, RELAXED_SHARE};
 use super::driver::{Allowance, Found};
-use super::family::freedom;
+use super::family::{freedom, one_is_enough};
 use super::frame::{Frame, in_frame};
 use super::multistart::{LONG_FIT, fit_and_judge, polish};
 use super::polish::{improve, reserve};
@@ -78,7 +78,9 @@ fn glimpse(
     sliders: &mut Sliders<'_>,
 ) -> Result<(Option<SearchOutcome>, Evaluations), PopulationError> {
     let solve = &context.problem.spec().solve;
-    if !is_one_enough(context.problem) || solve.evaluations < GLIMPSE_SHARE * GLIMPSE {
+    if !one_is_enough(context.problem, freedom(context.problem))
+        || solve.evaluations < GLIMPSE_SHARE * GLIMPSE
+    {
         return Ok((None, Evaluations::default()));
     }
     // Its checkpoints would be taken for those of the whole search.
@@ -93,12 +95,6 @@ fn glimpse(
         ranked(context, found)
     });
     Ok((exact, spent))
-}
-
-/// Returns whether one exact answer ends the search: where one is asked for, unless it is one of a family, of which the best
-/// transmitting one is wanted.
-fn is_one_enough(problem: &Problem) -> bool {
-    problem.spec().solve.candidates <= 1 && freedom(problem) == 0
 }
 
 /// Returns whether one of the candidates is accepted and exact.
@@ -132,7 +128,7 @@ fn beside(context: Context<'_>, four_bars: SearchOutcome, sliders: Sliders<'_>) 
         accepted.map(|c| searched(problem, c)).min_by(f64::total_cmp).unwrap_or(f64::INFINITY)
     };
     let before = (best(&found), found.repeats, found.reason);
-    let is_enough = is_one_enough(problem) && is_exact(problem, &found.candidates);
+    let is_enough = one_is_enough(problem, freedom(problem)) && is_exact(problem, &found.candidates);
     let next = if is_enough || context.stopped() || limit == 0 {
         sliders.found(context.problem)
     } else {

@@ -1,4 +1,4 @@
-//! What the multistart searches by repeated hits share: the best answer so far, and when it is believed.
+//! The state of a multistart search by repeated hits: it keeps the best answer so far and decides when that is believed.
 //!
 //! A search ends when enough independent rounds have reached its best answer, or when it has gone on for several times as
 //! long as it took to reach it, and as many distinct answers as were asked for are known or no new one comes.

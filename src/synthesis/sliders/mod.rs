@@ -3,44 +3,37 @@
 //! repeated hits of the best answer.
 //!
 //! A round draws `DRAWS` shapes of one kind ([`starts`]), or pairs dyads that suit the poses ([`guided`]), fits the `SHORT`
-//! that are nearest to the target for a few steps and the best `LONG` of those to convergence, and has the ends judged. Kinds take turns. Rounds run in parallel in batches
-//! and are read in their order: the number of threads changes nothing but the time. The search ends when enough rounds have
-//! reached the best answer (or the search has gone on for several times as long as it took to reach it) and as many distinct
-//! answers as were asked for are known, or no new one has come for `quiet_batches` of them; an exact answer needs no second
-//! hit, and where one answer is asked for the rounds after it in its batch are not read. The best answers are fitted on to
-//! the last digit at the end.
+//! that are nearest to the target for a few steps and the best `LONG` of those to convergence, and has the ends judged
+//! ([`fits`]). Kinds take turns. Rounds run in parallel in batches and are read in their order: the number of threads changes
+//! nothing but the time. The search ends when enough rounds have reached the best answer (or the search has gone on for
+//! several times as long as it took to reach it) and as many distinct answers as were asked for are known, or no new one has
+//! come for `quiet_batches` of them; an exact answer needs no second hit, and where one is enough the rounds after it in its
+//! batch are not read. The best answers are fitted on to the last digit at the end; exact ones that form a family are led to
+//! better transmission angles.
 
+mod fits;
 mod guided;
 mod starts;
 
 use super::Context;
-use super::constants::Effort;
 use super::constants::sliders::{
-    BATCH, DRAWS, FAMILY_BATCHES, GLIMPSE, KEPT, LEAST_POLISHED, LONG, LONG_FIT, POLISH, SHORT, SHORT_FIT,
-    STOPPING, TURNING,
+    BATCH, FAMILY_BATCHES, GLIMPSE, KEPT, LEAST_POLISHED, LONG, LONG_FIT, POLISH, SHORT, SHORT_FIT, STOPPING,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, drive, in_parallel};
-use super::family::climb;
+use super::family::{climb, freedom_within, one_is_enough};
 use super::multistart::{RoundOutcome, by_merit};
 use super::states::{RepeatedState, SearchState};
-use crate::judge::assess::assess_on_curve;
 use crate::judge::rank::{exact_cost, searched, sort};
-use crate::judge::unwrapped::unwrapped;
-use crate::judge::warm::direction_and_offset;
-use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, Complex, LoopKind};
-use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
-use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, solve};
-use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Reason};
-use crate::task::forms::slider::fit::{Angles, SliderFit};
+use crate::mechanism::LoopKind;
+use crate::numbers::arithmetic::streams::stream;
+use crate::record::{Candidate, Reason};
+use crate::task::Problem;
 use crate::task::forms::slider::limits::Limited;
-use crate::task::forms::slider::shape::{Closure, FRAME, OFFSET, SliderShape};
-use crate::task::ranges::Reference;
-use crate::task::{AngleOffset, Problem, Timing};
+pub(super) use fits::refit;
+use fits::{Fits, start_at};
 use guided::Guided;
 use rayon::prelude::*;
-use starts::{Start, Target, free, prescribed};
-use std::f64::consts::PI;
+use starts::{Start, Target};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The streams of the rounds begin here, so that they differ from those of the four-bars.
@@ -60,238 +53,6 @@ pub(super) struct Sliders<'a> {
     at: RepeatedState,
 }
 
-/// Fits a candidate with a slider to the context's problem from where it stands, with at most so many evaluations and until
-/// the weighted sum of squares is at most `enough`. Returns the end, judged, and the evaluations used.
-pub(super) fn refit(
-    context: Context<'_>,
-    from: &Candidate,
-    (effort, evaluations, enough): (Effort, u64, f64),
-) -> (Option<Candidate>, u64) {
-    let problem = context.problem;
-    let target = Target::of(problem);
-    let Some(start) = start_at(problem, &target, from) else { return (None, 0) };
-    let limits = Limited::of(problem, start.kind, target.centre, target.size);
-    let exact = enough / (target.size * target.size);
-    let mut fits = Fits { context, target: &target, exact, allowance: evaluations, used: 0 };
-    let end = fits.run(&limits, start, effort);
-    (end.and_then(|(_, end)| fits.judged(&end)), fits.used)
-}
-
-/// Returns the start at which a candidate stands; `None` of a four-bar, or if its loop is open at a point.
-fn start_at(problem: &Problem, target: &Target, candidate: &Candidate) -> Option<Start> {
-    let linkage = &candidate.linkage;
-    let back = 1.0 / target.size;
-    let shape = SliderShape::from_linkage(linkage)?.carried(Complex::new(back, 0.0), -target.centre * back);
-    let position = |(deg, t1): (&f64, &AssemblyMode)| {
-        let angle = deg.to_radians();
-        let at = linkage.joints_with(angle, *t1)?;
-        Some([Complex::from_polar(1.0, angle), at.coupler])
-    };
-    let (direction, offset) = direction_and_offset(problem, candidate);
-    let is_free = matches!(problem.task().timing(), Timing::Free);
-    let at = candidate.crank_deg.iter().zip(&candidate.t1_at);
-    Some(Start {
-        kind: linkage.kind(),
-        x: shape.unknowns(offset, candidate.frame_deg.unwrap_or(0.0).to_radians()),
-        positions: if is_free { at.map(position).collect::<Option<_>>()? } else { Vec::new() },
-        assembly: linkage.assembly(),
-        direction,
-        turns: linkage.mobility().input_turns_fully(),
-    })
-}
-
-/// Returns a start of a slider-crank with its line seen in the sense that is nearest to its bounds.
-fn aligned(limits: &Limited, mut start: Start) -> Start {
-    if start.kind == LoopKind::SliderCrank {
-        let (angle, is_turned) = limits.line_angle(start.x[5]);
-        start.x[5] = angle;
-        if is_turned {
-            start.x[4] = -start.x[4];
-            start.assembly = start.assembly.opposite();
-        }
-    }
-    start
-}
-
-/// A round's fits within an allowance of evaluations.
-struct Fits<'a> {
-    context: Context<'a>,
-    target: &'a Target,
-    /// The cost, in the target's units, below which nothing is left to gain.
-    exact: f64,
-    allowance: u64,
-    used: u64,
-}
-
-impl Fits<'_> {
-    fn is_at_its_end(&self) -> bool {
-        self.context.stopped() || self.used >= self.allowance
-    }
-
-    /// Returns the fit of a start, its points in the order that they have.
-    fn fit<'f, const R: usize>(&'f self, limits: &'f Limited, start: &Start) -> SliderFit<'f, R> {
-        let problem = self.context.problem;
-        let angles = match problem.task().timing() {
-            Timing::Free => Angles::Free,
-            Timing::Prescribed { offset, .. } => {
-                Angles::Prescribed(problem.phases(start.direction), *offset, start.assembly)
-            }
-        };
-        let fit = SliderFit {
-            kind: start.kind,
-            points: &self.target.points,
-            weights: &self.target.weights,
-            body: self.target.body.as_ref(),
-            angles,
-            limits,
-            sense: 0.0,
-            ends_meet: problem.task().repeats_first(),
-        };
-        if problem.order_required() { fit.in_order(&start.x, &start.positions) } else { fit }
-    }
-
-    /// Fits from a start, and returns the end with its merit; `None` if it is given up.
-    fn run(&mut self, limits: &Limited, start: Start, effort: Effort) -> Option<(f64, Start)> {
-        match self.target.body {
-            None => self.run_on::<2>(limits, start, effort),
-            Some(_) => self.run_on::<3>(limits, start, effort),
-        }
-    }
-
-    /// As [`Fits::run`] with R rows a target.
-    fn run_on<const R: usize>(
-        &mut self,
-        limits: &Limited,
-        start: Start,
-        effort: Effort,
-    ) -> Option<(f64, Start)> {
-        if self.is_at_its_end() {
-            return None;
-        }
-        let (limits, start) = (limits.turning(start.turns), aligned(limits, start));
-        let weight: f64 = self.target.weights.iter().sum();
-        let options = LmOptions {
-            max_steps: effort.steps,
-            max_rounds: effort.rounds,
-            max_evaluations: self.allowance - self.used,
-            relative_reduction: effort.relative_reduction,
-            exact_cost: 1e-6 * self.exact,
-            feasibility: 1e-9,
-            hopeless_cost: 0.04 * weight,
-        };
-        let fit = self.fit::<R>(&limits, &start);
-        let (positions, context) = (start.positions.clone(), self.context);
-        let end = solve(&fit, start.x, positions, &options, &|| context.stopped());
-        self.used += end.evaluations;
-        let usable = !matches!(end.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
-        let merit = end.cost + weight * end.violation * end.violation;
-        usable.then_some((merit, Start { x: end.x, positions: end.state, ..start }))
-    }
-
-    /// Draws the starts of a path with their misfits.
-    fn drawn(&mut self, (kind, limits): (LoopKind, &Limited), draws: &mut Stream) -> Vec<(f64, Start)> {
-        let (problem, target) = (self.context.problem, self.target);
-        let is_free = matches!(problem.task().timing(), Timing::Free);
-        let mut drawn: Vec<(f64, Start)> = Vec::new();
-        for _ in 0..DRAWS {
-            if self.is_at_its_end() {
-                break;
-            }
-            self.used += 1;
-            let turns = limits.must_turn || uniform(draws, 0.0, 1.0) < TURNING;
-            drawn.extend(if is_free {
-                free(problem, target, (kind, turns), draws)
-            } else {
-                prescribed(problem, target, (kind, turns), draws)
-            });
-        }
-        drawn
-    }
-
-    /// Returns the starts of a motion with their costs, those on one branch first if one is required.
-    fn glanced(&mut self, limits: &Limited, starts: Vec<Start>) -> Vec<(f64, Start)> {
-        let one_branch = !self.context.problem.branch_any();
-        let weight: f64 = self.target.weights.iter().sum();
-        let mut glanced = Vec::with_capacity(starts.len());
-        for start in starts {
-            if self.is_at_its_end() {
-                break;
-            }
-            self.used += 1;
-            let start = aligned(limits, start);
-            let Some(cost) = self.fit::<3>(limits, &start).cost(&start.x, &start.positions) else { continue };
-            let Some(shape) = SliderShape::of(start.kind, &start.x) else { continue };
-            let mut signs = start.positions.iter().map(|position| shape.assembly_of(*position));
-            let first = signs.next();
-            let strays = one_branch && !signs.all(|sign| Some(sign) == first);
-            glanced.push((if strays { cost + weight } else { cost }, start));
-        }
-        glanced
-    }
-
-    /// Returns the judged candidate of an end; the distances to its whole curve are measured later, if it is listed.
-    fn judged(&self, end: &Start) -> Option<Candidate> {
-        const UNKNOWN: CurveErrorRecord = CurveErrorRecord { sum_sq: 0.0, rms: 0.0, max: 0.0 };
-        let problem = self.context.problem;
-        let Target { size, centre, .. } = *self.target;
-        let unit = SliderShape::of(end.kind, &end.x)?;
-        let shape = unit.carried(Complex::new(size, 0.0), centre);
-        let own_sign = match problem.task().timing() {
-            Timing::Free => unit.assembly_of(*end.positions.first()?),
-            Timing::Prescribed { .. } => end.assembly,
-        };
-        let (linkage, crank_deg, assemblies) = match problem.task().timing() {
-            Timing::Free => {
-                let signs: Vec<AssemblyMode> = end.positions.iter().map(|p| unit.assembly_of(*p)).collect();
-                let linkage = shape.linkage(own_sign).ok()?;
-                // Seen from the first position, whose sign is +1.
-                let own = |sign: AssemblyMode| AssemblyMode::of(sign.sign() * own_sign.sign());
-                let angles = end.positions.iter().map(|[e, _]| e.arg()).collect();
-                let (crank_deg, t1) =
-                    unwrapped(problem, linkage, angles, signs.into_iter().map(own).collect());
-                (linkage, crank_deg, t1)
-            }
-            Timing::Prescribed { offset, .. } => {
-                let linkage = shape.linkage(own_sign).ok()?;
-                let base = match offset {
-                    AngleOffset::Free => wrapped(end.x[OFFSET]).to_degrees(),
-                    AngleOffset::Fixed => 0.0,
-                    AngleOffset::Ground => linkage.ground_angle().to_degrees(),
-                };
-                let written = &problem.spec().task.timing.as_ref()?.crank_deg;
-                let run = problem.run(end.direction);
-                let crank_deg: Vec<f64> = written.iter().map(|deg| base + run * deg).collect();
-                let t1 = vec![AssemblyMode::Plus; crank_deg.len()];
-                (linkage, crank_deg, t1)
-            }
-        };
-        let frame = end.x[FRAME] + turn_of_coupler(&unit, own_sign);
-        let own = self.target.body.as_ref().map(|_| Reference::frame(wrapped(frame).to_degrees()));
-        let mut candidate = assess_on_curve(problem, linkage, (&crank_deg, &assemblies), own, Some(UNKNOWN))?;
-        let ErrorRecord { sum_sq, rms, max, .. } = candidate.error;
-        candidate.error.to_curve = CurveErrorRecord { sum_sq, rms, max };
-        Some(candidate)
-    }
-}
-
-/// Returns the number of free parameters of a kind within its limits that are left when all targets are met; 0 if there are
-/// equations enough. With free timing each target takes one of its equations for its own crank angle.
-fn freedom(problem: &Problem, limits: &Limited) -> usize {
-    let task = problem.task();
-    let free = limits.bounds.iter().filter(|(low, high)| low < high).count();
-    let angles = task.body().map_or(0, |body| body.angles.iter().flatten().count());
-    let of_places = if matches!(task.timing(), Timing::Free) { 1 } else { 2 };
-    free.saturating_sub(of_places * task.len() + angles)
-}
-
-/// Returns the angle from the coupler's direction of a shape to that of its linkage with the assembly of one of its positions.
-fn turn_of_coupler(shape: &SliderShape, assembly: AssemblyMode) -> f64 {
-    match shape.closure {
-        Closure::Block { .. } if assembly == AssemblyMode::Minus => PI,
-        Closure::Block { .. } | Closure::Line { .. } => 0.0,
-    }
-}
-
 impl<'a> Sliders<'a> {
     /// Creates the search of a problem, or goes on with the one that was kept; `None` if none of the kinds has a slider.
     pub(super) fn of(context: Context<'a>, kinds: &[LoopKind]) -> Option<Self> {
@@ -305,14 +66,15 @@ impl<'a> Sliders<'a> {
         let earlier = context.keeper.and_then(|keeper| keeper.earlier().sliders.clone());
         let (guided, exact) = (Guided::of(problem), exact_cost(problem));
         let at = RepeatedState::of(problem, earlier);
-        let freedom = kinds.iter().map(|(_, limits)| freedom(problem, limits)).max()?;
+        let freedom = kinds.iter().map(|(_, limits)| freedom_within(problem, &limits.bounds)).max()?;
         Some(Sliders { target, guided, kinds, exact, freedom, glimpse: None, at })
     }
 
     /// Runs the first `GLIMPSE` batches with at most `limit` evaluations. Returns what has been found if that is an exact
     /// answer, and one is enough.
     pub(super) fn glimpse(&mut self, context: Context<'_>, limit: u64) -> Option<Found> {
-        if self.at.batch < GLIMPSE {
+        let used = self.at.evaluations.objective.max(self.at.draws);
+        if self.at.batch < GLIMPSE && used < limit {
             self.glimpse = Some(GLIMPSE);
             drive(context, Allowance { limit, patience: limit }, self);
             self.glimpse = None;
@@ -370,23 +132,18 @@ impl<'a> Sliders<'a> {
         }
         let problem = context.problem;
         let target = &self.target;
-        let exact = self.exact / (target.size * target.size);
-        let mut fits = Fits { context, target, exact, allowance, used: 0 };
+        let mut fits = Fits::new(context, target, self.exact, allowance);
         let mut outcome = RoundOutcome::default();
         let mut draws = stream(problem.spec().solve.seed, STREAMS + index);
         let (kind, limits) = &self.kinds[index as usize % self.kinds.len()];
         let mut drawn: Vec<(f64, Start)> = match &self.guided {
             Some(guided) => {
                 let first = (index as usize) < self.kinds.len();
-                let starts = guided.starts(target, *kind, first, &mut draws);
-                outcome.draws += starts.len() as u64;
-                fits.glanced(limits, starts)
+                fits.glanced(limits, guided.starts(target, *kind, first, &mut draws))
             }
             None => fits.drawn((*kind, limits), &mut draws),
         };
-        if self.guided.is_none() {
-            outcome.draws += fits.used;
-        }
+        outcome.draws = fits.used;
         by_merit(&mut drawn, SHORT);
         let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
         for (_, start) in drawn {
@@ -415,10 +172,9 @@ impl<'a> Sliders<'a> {
         candidate.accepted && searched(problem, candidate) <= self.exact
     }
 
-    /// Returns whether one exact answer ends the search: where one is asked for, unless it is one of a family, of which the
-    /// best transmitting one is wanted.
+    /// Returns whether one exact answer ends the search.
     fn is_one_enough(&self, problem: &Problem) -> bool {
-        problem.spec().solve.candidates <= 1 && self.freedom == 0
+        one_is_enough(problem, self.freedom)
     }
 
     /// Fits the best candidates on to the last digit, within a limit of evaluations: along a valley, or on a limit, a round's
@@ -432,10 +188,9 @@ impl<'a> Sliders<'a> {
         if left == 0 || context.stopped() || before.is_some_and(|before| before <= self.exact) {
             return false;
         }
-        let exact = self.exact / (self.target.size * self.target.size);
         let share = left / most as u64;
         let polished = |candidate: &Candidate| {
-            let mut fits = Fits { context, target: &self.target, exact, allowance: share, used: 0 };
+            let mut fits = Fits::new(context, &self.target, self.exact, share);
             let start = start_at(problem, &self.target, candidate)?;
             let (_, limits) = self.kinds.iter().find(|(kind, _)| *kind == start.kind)?;
             let end = fits.run(limits, start, POLISH);
@@ -494,9 +249,9 @@ impl Strategy for Sliders<'_> {
     }
 
     fn is_done(&mut self, context: Context<'_>) -> bool {
-        if self.freedom > 0 && self.at.is_exact(context.problem) && self.at.batch < FAMILY_BATCHES {
-            return self.glimpse.is_some_and(|batches| self.at.batch >= batches);
-        }
-        self.at.is_done(context, &STOPPING) || self.glimpse.is_some_and(|batches| self.at.batch >= batches)
+        let is_sampled = self.freedom == 0 || self.at.batch >= FAMILY_BATCHES;
+        let is_family = !is_sampled && self.at.is_exact(context.problem);
+        let is_glimpsed = self.glimpse.is_some_and(|batches| self.at.batch >= batches);
+        is_glimpsed || !is_family && self.at.is_done(context, &STOPPING)
     }
 }

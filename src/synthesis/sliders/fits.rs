@@ -1,0 +1,245 @@
+//! Fits of a round: its starts drawn and compared, led to their ends by Levenberg-Marquardt, and these judged.
+
+use super::starts::{Start, Target, free, prescribed};
+use crate::judge::assess::assess_on_curve;
+use crate::judge::unwrapped::unwrapped;
+use crate::judge::warm::direction_and_offset;
+use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::{AssemblyMode, Complex, LoopKind};
+use crate::numbers::arithmetic::streams::{Stream, uniform};
+use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, solve};
+use crate::record::{Candidate, CurveErrorRecord, ErrorRecord};
+use crate::synthesis::Context;
+use crate::synthesis::constants::Effort;
+use crate::synthesis::constants::sliders::{DRAWS, TURNING};
+use crate::task::forms::slider::fit::{Angles, SliderFit};
+use crate::task::forms::slider::limits::Limited;
+use crate::task::forms::slider::shape::{Closure, FRAME, OFFSET, SliderShape};
+use crate::task::ranges::Reference;
+use crate::task::{AngleOffset, Problem, Timing};
+use std::f64::consts::PI;
+
+/// Fits a candidate with a slider to the context's problem from where it stands, with at most so many evaluations and until
+/// the weighted sum of squares is at most `enough`. Returns the end, judged, and the evaluations used.
+pub(in crate::synthesis) fn refit(
+    context: Context<'_>,
+    from: &Candidate,
+    (effort, evaluations, enough): (Effort, u64, f64),
+) -> (Option<Candidate>, u64) {
+    let problem = context.problem;
+    let target = Target::of(problem);
+    let Some(start) = start_at(problem, &target, from) else { return (None, 0) };
+    let limits = Limited::of(problem, start.kind, target.centre, target.size);
+    let mut fits = Fits::new(context, &target, enough, evaluations);
+    let end = fits.run(&limits, start, effort);
+    (end.and_then(|(_, end)| fits.judged(&end)), fits.used)
+}
+
+/// Returns the start at which a candidate stands; `None` of a four-bar, or if its loop is open at a point.
+pub(super) fn start_at(problem: &Problem, target: &Target, candidate: &Candidate) -> Option<Start> {
+    let linkage = &candidate.linkage;
+    let back = 1.0 / target.size;
+    let shape = SliderShape::from_linkage(linkage)?.carried(Complex::new(back, 0.0), -target.centre * back);
+    let position = |(deg, t1): (&f64, &AssemblyMode)| {
+        let angle = deg.to_radians();
+        let at = linkage.joints_with(angle, *t1)?;
+        Some([Complex::from_polar(1.0, angle), at.coupler])
+    };
+    let (direction, offset) = direction_and_offset(problem, candidate);
+    let is_free = matches!(problem.task().timing(), Timing::Free);
+    let at = candidate.crank_deg.iter().zip(&candidate.t1_at);
+    Some(Start {
+        kind: linkage.kind(),
+        x: shape.unknowns(offset, candidate.frame_deg.unwrap_or(0.0).to_radians()),
+        positions: if is_free { at.map(position).collect::<Option<_>>()? } else { Vec::new() },
+        assembly: linkage.assembly(),
+        direction,
+        turns: linkage.mobility().input_turns_fully(),
+    })
+}
+
+/// Returns a start of a slider-crank with its line seen in the sense that is nearest to its bounds.
+fn aligned(limits: &Limited, mut start: Start) -> Start {
+    if start.kind == LoopKind::SliderCrank {
+        let (angle, is_turned) = limits.line_angle(start.x[5]);
+        start.x[5] = angle;
+        if is_turned {
+            start.x[4] = -start.x[4];
+            start.assembly = start.assembly.opposite();
+        }
+    }
+    start
+}
+
+/// A round's fits within an allowance of evaluations.
+pub(super) struct Fits<'a> {
+    context: Context<'a>,
+    target: &'a Target,
+    /// The cost, in units of the target's size, below which nothing is left to gain.
+    exact: f64,
+    allowance: u64,
+    /// The evaluations used so far.
+    pub(super) used: u64,
+}
+
+impl<'a> Fits<'a> {
+    /// Creates the fits with an allowance of evaluations, of which a weighted sum of squares of at most `exact` ends one.
+    pub(super) fn new(context: Context<'a>, target: &'a Target, exact: f64, allowance: u64) -> Self {
+        Fits { context, target, exact: exact / (target.size * target.size), allowance, used: 0 }
+    }
+
+    fn is_at_its_end(&self) -> bool {
+        self.context.stopped() || self.used >= self.allowance
+    }
+
+    /// Returns the fit of a start, its points in the order that they have.
+    fn fit<'f, const R: usize>(&'f self, limits: &'f Limited, start: &Start) -> SliderFit<'f, R> {
+        let problem = self.context.problem;
+        let angles = match problem.task().timing() {
+            Timing::Free => Angles::Free,
+            Timing::Prescribed { offset, .. } => {
+                Angles::Prescribed(problem.phases(start.direction), *offset, start.assembly)
+            }
+        };
+        let fit = SliderFit {
+            kind: start.kind,
+            points: &self.target.points,
+            weights: &self.target.weights,
+            body: self.target.body.as_ref(),
+            angles,
+            limits,
+            sense: 0.0,
+            ends_meet: problem.task().repeats_first(),
+        };
+        if problem.order_required() { fit.in_order(&start.x, &start.positions) } else { fit }
+    }
+
+    /// Fits from a start, and returns the end with its merit; `None` if it is given up.
+    pub(super) fn run(&mut self, limits: &Limited, start: Start, effort: Effort) -> Option<(f64, Start)> {
+        match self.target.body {
+            None => self.run_on::<2>(limits, start, effort),
+            Some(_) => self.run_on::<3>(limits, start, effort),
+        }
+    }
+
+    /// As [`Fits::run`] with R rows a target.
+    fn run_on<const R: usize>(
+        &mut self,
+        limits: &Limited,
+        start: Start,
+        effort: Effort,
+    ) -> Option<(f64, Start)> {
+        if self.is_at_its_end() {
+            return None;
+        }
+        let (limits, start) = (limits.turning(start.turns), aligned(limits, start));
+        let weight: f64 = self.target.weights.iter().sum();
+        let options = LmOptions {
+            max_steps: effort.steps,
+            max_rounds: effort.rounds,
+            max_evaluations: self.allowance - self.used,
+            relative_reduction: effort.relative_reduction,
+            exact_cost: 1e-6 * self.exact,
+            feasibility: 1e-9,
+            hopeless_cost: 0.04 * weight,
+        };
+        let fit = self.fit::<R>(&limits, &start);
+        let (positions, context) = (start.positions.clone(), self.context);
+        let end = solve(&fit, start.x, positions, &options, &|| context.stopped());
+        self.used += end.evaluations;
+        let usable = !matches!(end.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
+        let merit = end.cost + weight * end.violation * end.violation;
+        usable.then_some((merit, Start { x: end.x, positions: end.state, ..start }))
+    }
+
+    /// Draws the starts of a path with their misfits.
+    pub(super) fn drawn(
+        &mut self,
+        (kind, limits): (LoopKind, &Limited),
+        draws: &mut Stream,
+    ) -> Vec<(f64, Start)> {
+        let (problem, target) = (self.context.problem, self.target);
+        let is_free = matches!(problem.task().timing(), Timing::Free);
+        let mut drawn: Vec<(f64, Start)> = Vec::new();
+        for _ in 0..DRAWS {
+            if self.is_at_its_end() {
+                break;
+            }
+            self.used += 1;
+            let turns = limits.must_turn || uniform(draws, 0.0, 1.0) < TURNING;
+            drawn.extend(if is_free {
+                free(problem, target, (kind, turns), draws)
+            } else {
+                prescribed(problem, target, (kind, turns), draws)
+            });
+        }
+        drawn
+    }
+
+    /// Returns the starts of a motion with their costs, those on one branch first if one is required.
+    pub(super) fn glanced(&mut self, limits: &Limited, starts: Vec<Start>) -> Vec<(f64, Start)> {
+        let one_branch = !self.context.problem.branch_any();
+        let weight: f64 = self.target.weights.iter().sum();
+        let mut glanced = Vec::with_capacity(starts.len());
+        for start in starts {
+            if self.is_at_its_end() {
+                break;
+            }
+            self.used += 1;
+            let start = aligned(limits, start);
+            let Some(cost) = self.fit::<3>(limits, &start).cost(&start.x, &start.positions) else { continue };
+            let Some(shape) = SliderShape::of(start.kind, &start.x) else { continue };
+            let mut signs = start.positions.iter().map(|position| shape.assembly_of(*position));
+            let first = signs.next();
+            let strays = one_branch && !signs.all(|sign| Some(sign) == first);
+            glanced.push((if strays { cost + weight } else { cost }, start));
+        }
+        glanced
+    }
+
+    /// Returns the judged candidate of an end; the distances to its whole curve are measured later, if it is listed.
+    pub(super) fn judged(&self, end: &Start) -> Option<Candidate> {
+        const UNKNOWN: CurveErrorRecord = CurveErrorRecord { sum_sq: 0.0, rms: 0.0, max: 0.0 };
+        let problem = self.context.problem;
+        let Target { size, centre, .. } = *self.target;
+        let unit = SliderShape::of(end.kind, &end.x)?;
+        let shape = unit.carried(Complex::new(size, 0.0), centre);
+        let sign = |position: &[Complex; 2]| unit.assembly_of(*position);
+        let first = end.positions.first().map_or(end.assembly, sign);
+        let linkage = shape.linkage(first).ok()?;
+        let (crank_deg, assemblies) = match problem.task().timing() {
+            Timing::Free => {
+                // Seen from the first position, whose sign is +1.
+                let own = |position| AssemblyMode::of(sign(position).sign() * first.sign());
+                let angles = end.positions.iter().map(|[e, _]| e.arg()).collect();
+                unwrapped(problem, linkage, angles, end.positions.iter().map(own).collect())
+            }
+            Timing::Prescribed { offset, .. } => {
+                let base = match offset {
+                    AngleOffset::Free => wrapped(end.x[OFFSET]).to_degrees(),
+                    AngleOffset::Fixed => 0.0,
+                    AngleOffset::Ground => linkage.ground_angle().to_degrees(),
+                };
+                let written = &problem.spec().task.timing.as_ref()?.crank_deg;
+                let run = problem.run(end.direction);
+                let crank_deg: Vec<f64> = written.iter().map(|deg| base + run * deg).collect();
+                let t1 = vec![AssemblyMode::Plus; crank_deg.len()];
+                (crank_deg, t1)
+            }
+        };
+        let frame = end.x[FRAME] + turn_of_coupler(&unit, first);
+        let own = self.target.body.as_ref().map(|_| Reference::frame(wrapped(frame).to_degrees()));
+        let mut candidate = assess_on_curve(problem, linkage, (&crank_deg, &assemblies), own, Some(UNKNOWN))?;
+        let ErrorRecord { sum_sq, rms, max, .. } = candidate.error;
+        candidate.error.to_curve = CurveErrorRecord { sum_sq, rms, max };
+        Some(candidate)
+    }
+}
+
+/// Returns the angle from the coupler's direction of a shape to that of its linkage with the assembly of one of its positions.
+fn turn_of_coupler(shape: &SliderShape, assembly: AssemblyMode) -> f64 {
+    match shape.closure {
+        Closure::Block { .. } if assembly == AssemblyMode::Minus => PI,
+        Closure::Block { .. } | Closure::Line { .. } => 0.0,
+    }
+}
