@@ -72,7 +72,7 @@ impl Points {
     }
 }
 
-/// What is asked for: points, the angles of the body there and those of the crank, in degrees.
+/// A target holds points, the angles of the body there and those of the crank, in degrees, and the linkage that made them.
 struct Asked {
     linkage: OneLoop,
     points: Vec<Complex>,

@@ -42,8 +42,9 @@ fn kinds_of(raw: &RawDesign) -> Vec<LoopKind> {
     if kinds == [LoopKind::FourBar] { Vec::new() } else { kinds }
 }
 
-/// Refuses an empty list of kinds, and kinds with a slider where they are not searched for: for functions, with exact targets, with
-/// free crank angles among prescribed ones, by other methods than least squares, and for the largest deviation.
+/// Refuses an empty list of kinds, and kinds with a slider where they are not searched for: for functions, with exact
+/// targets, with free crank angles among prescribed ones, by other methods than least squares, and for the largest
+/// deviation.
 pub(super) fn of_kinds(
     toml: &TomlText<'_>,
     raw: &RawDesign,

@@ -1,11 +1,12 @@
 //! Layers of the plates: a stacking in which no parts cross while the linkage moves.
 //!
 //! Plates joined by a pin overlap at that pin, so each of the pairs ground-crank, crank-coupler, coupler-follower and
-//! follower-ground needs two layers. The pairs crank-follower and coupler-ground may share a plane if they stay apart
-//! over the whole motion. A block of a slider takes the place of the follower; its guide pins join it to the plate with
-//! the slot. A plate with a slot counts as if it were filled, except for the pins that always lie in the slot. A pin passes through all layers from one of its plates to the other; in those between, it
-//! must stay clear of every plate there and of every other pin that passes through them. Pins end flush with their
-//! plates, and every plate is one piece in one layer. All stackings are tried: there are at most 4^4.
+//! follower-ground needs two layers. The pairs crank-follower and coupler-ground may share a plane if they stay apart over
+//! the whole motion. A block of a slider takes the place of the follower; its guide pins join it to the plate with the
+//! slot. A plate with a slot counts as if it were filled, except for the pins that always lie in the slot. A pin passes
+//! through all layers from one of its plates to the other; in those between, it must stay clear of every plate there and of
+//! every other pin that passes through them. Pins end flush with their plates, and every plate is one piece in one layer.
+//! All stackings are tried: there are at most 4^4.
 //!
 //! Two parts are clear if the proved bound of [`super::closest`] is above zero. Parts that touch within its margin
 //! count as crossing.

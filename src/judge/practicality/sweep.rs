@@ -19,9 +19,9 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Returns the whole motion of a linkage by itself without passing a toggle: the full turn, or the arc of the crank
-    /// (of two arcs the first, of a four-bar the one to the left of A -> B) with the linkage's own assembly mode; `None` if it cannot be
-    /// assembled.
+    /// Returns the whole motion of a linkage by itself without passing a toggle: the full turn, or the arc of the crank (of
+    /// two arcs the first, of a four-bar the one to the left of A -> B) with the linkage's own assembly mode; `None` if it
+    /// cannot be assembled.
     pub fn of_linkage(linkage: impl Into<OneLoop>) -> Option<Self> {
         let linkage = linkage.into();
         let input = linkage.mobility().input;

@@ -67,8 +67,8 @@ const SLIDER: &str = "SLIDER";
 /// The layer of what is engraved.
 const MARK: &str = "MARK";
 
-/// Draws each plate on its own layer: one closed contour, holes as true circles, a slot as a closed contour, all offset by half the kerf; names to
-/// engrave on a layer of their own, unless the settings leave them out.
+/// Draws each plate on its own layer: one closed contour, holes as true circles, a slot as a closed contour, all offset by
+/// half the kerf; names to engrave on a layer of their own, unless the settings leave them out.
 pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let mut layers: Vec<(String, u8)> = plates.iter().map(|(plate, _)| (layer(plate), CUT)).collect();
     if model.settings.marks() {

@@ -26,8 +26,8 @@ const PHASES: [f64; 4] = [0.291, 0.137, 0.413, 0.067];
 const STAGGER: f64 = 0.019;
 
 impl Mesh {
-    /// Returns the mesh of a placed plate with its holes and its slot, with its lower side at z = 0. `None` if no closed body was
-    /// found (holes that leave the plate).
+    /// Returns the mesh of a placed plate with its holes and its slot, with its lower side at z = 0. `None` if no closed
+    /// body was found (holes that leave the plate).
     pub(super) fn of(model: &Model<'_>, plate: &Plate, place: &Placement) -> Option<Self> {
         PHASES.iter().find_map(|phase| Mesh::with_phase(model, plate, place, *phase))
     }
