@@ -44,7 +44,7 @@ pub fn built(
         }
     };
     let found = found.ok_or_else(|| format!("{title} cannot be assembled, so there is nothing to build"))?;
-    let tolerance = tolerance.unwrap_or_else(|| usual_tolerance(&linkage, unit));
+    let tolerance = tolerance.unwrap_or_else(|| usual_tolerance(linkage, unit));
     let text = practicality_text(&found, unit, tolerance, Colour::Never);
     Ok((figures(&found, tolerance), text))
 }
@@ -72,7 +72,7 @@ fn figures(found: &Practicality, tolerance: f64) -> Value {
     let sensitivity = found.sensitivity.as_ref().map(|felt| {
         json!({
             "dimensions": felt.dimensions.iter().map(dimension).collect::<Vec<_>>(),
-            "ground": dimension(&felt.ground),
+            "ground": felt.ground.as_ref().map(dimension),
             "band": felt.band, "worst": felt.worst, "worst_at": felt.worst_at, "at_toggles": felt.at_toggles,
         })
     });
