@@ -5,6 +5,7 @@
 //! cargo bench --bench sliders -- closed 20     classes whose name contains the word, 20 curves
 //!     --seed N        of the curves (1)
 //!     --show          every curve that was missed
+//!     --only N        the curve with that number alone
 //! ```
 //!
 //! | class | targets |
@@ -14,11 +15,13 @@
 //! | timed-18 | 18 points over a whole turn, with their crank angles |
 //! | poses-8 | 8 poses of the coupler over 90 to 300 degrees of such a crank |
 //! | timed-poses-8 | such poses with their crank angles |
+//! | places-12 | 12 places of the slider, or of the block along the rod, at crank angles over 90 to 300 degrees |
+//! | angles-12 | 12 angles of the block of an inverted slider-crank, likewise |
 //! | mixed | half by four-bars and half by sliders, all three kinds searched for; closed, 60 points |
 //!
 //! Linkages are drawn whose lengths, pivots and rail lie within the default bounds of their target. *Recovered* is an
-//! accepted first candidate with rms/size below 1e-9 (of poses also in radians; in the mixed class: of the kind that drew the
-//! target). One thread, one
+//! accepted first candidate with rms/size below 1e-9 (of poses also in radians; of angles and places over their range; in the
+//! mixed class: of the kind that drew the target). One thread, one
 //! answer asked for, `longest_max = "any"`. Times are those of the search.
 
 #![expect(clippy::print_stdout, reason = "the table is what this program is for")]
@@ -27,7 +30,8 @@ use linkwright::Problem;
 use linkwright::internals::app::job::run::{Context, Job, run};
 use linkwright::internals::files::problem_file::parse;
 use linkwright::internals::mechanism::{
-    AssemblyMode, Complex, FourBar, InvertedSliderCrank, LoopKind, OneLoop, SliderCrank, bounding_box, xy,
+    AssemblyMode, Complex, FourBar, InvertedSliderCrank, LoopJoints, LoopKind, OneLoop, SliderCrank,
+    bounding_box, xy,
 };
 use linkwright::internals::numbers::arithmetic::streams::{Stream, below, stream, uniform};
 use linkwright::internals::record::Candidate;
@@ -52,19 +56,32 @@ enum Points {
     Timed,
     Poses,
     TimedPoses,
+    Places,
+    Angles,
 }
 
 impl Points {
-    const ALL: [(&str, Points); 5] = [
+    const ALL: [(&str, Points); 7] = [
         ("closed-60", Points::Closed),
         ("open-30", Points::Open),
         ("timed-18", Points::Timed),
         ("poses-8", Points::Poses),
         ("timed-poses-8", Points::TimedPoses),
+        ("places-12", Points::Places),
+        ("angles-12", Points::Angles),
     ];
 
     fn is_timed(self) -> bool {
         matches!(self, Points::Timed | Points::TimedPoses)
+    }
+
+    fn is_function(self) -> bool {
+        matches!(self, Points::Places | Points::Angles)
+    }
+
+    /// Returns whether a kind has such targets: the slider of a slider-crank does not turn.
+    fn suits(self, kind: LoopKind) -> bool {
+        self != Points::Angles || kind != LoopKind::SliderCrank
     }
 
     fn is_motion(self) -> bool {
@@ -72,12 +89,14 @@ impl Points {
     }
 }
 
-/// A target holds points, the angles of the body there and those of the crank, in degrees, and the linkage that made them.
+/// A target holds points, the angles of the body there and those of the crank, in degrees, the outputs of a function, and the
+/// linkage that made them.
 struct Asked {
     linkage: OneLoop,
     points: Vec<Complex>,
     body_deg: Vec<f64>,
     crank_deg: Vec<f64>,
+    outputs: Vec<f64>,
 }
 
 /// Draws a linkage of a kind whose crank turns fully, with joints within a few cranks of each other.
@@ -137,6 +156,26 @@ fn within_bounds(linkage: &OneLoop, points: &[Complex]) -> bool {
         && z.re.abs().max(z.im.abs()) <= REACH * size
 }
 
+/// Returns whether a linkage lies within the default bounds of the function that it generates.
+fn generates_within_bounds(linkage: &OneLoop, of: Points, outputs: &[f64]) -> bool {
+    let [low, high] = outputs.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], output| {
+        [low.min(*output), high.max(*output)]
+    });
+    let ground = linkage.ground();
+    let size = if of == Points::Places { high - low } else { ground.unwrap_or(1.0) };
+    let lengths = [Some(linkage.crank()), linkage.coupler(), ground];
+    let offset = match linkage {
+        OneLoop::InvertedSliderCrank(l) => l.offset(),
+        OneLoop::SliderCrank(l) => ((l.line_point() - linkage.crank_pivot()) * l.line_direction().conj()).im,
+        OneLoop::FourBar(_) => 0.0,
+    };
+    // Outputs are wrapped to half a turn.
+    let turns = of == Points::Angles && outputs.windows(2).any(|w| (w[1] - w[0]).abs() > 180.0);
+    !turns
+        && lengths.into_iter().flatten().all(|l| (0.1 * size..=10.0 * size).contains(&l))
+        && offset.abs() <= REACH * size
+}
+
 /// Draws a linkage and places of its coupler.
 fn target(kind: LoopKind, of: Points, draws: &mut Stream) -> Asked {
     loop {
@@ -147,18 +186,30 @@ fn target(kind: LoopKind, of: Points, draws: &mut Stream) -> Asked {
             Points::Open => (30, uniform(draws, 0.5 * PI, 300.0_f64.to_radians())),
             Points::Timed => (18, TAU * 17.0 / 18.0),
             Points::Poses | Points::TimedPoses => (8, uniform(draws, 0.5 * PI, 300.0_f64.to_radians())),
+            Points::Places | Points::Angles => (12, uniform(draws, 0.5 * PI, 300.0_f64.to_radians())),
         };
         let angles: Vec<f64> = (0..n).map(|j| from + span * f64::from(j) / f64::from(n - 1)).collect();
         let at = |angle: &f64| linkage.joints_with(*angle, linkage.assembly());
         let Some(places) = angles.iter().map(at).collect::<Option<Vec<_>>>() else { continue };
         let points: Vec<Complex> = places.iter().map(|at| at.joints.coupler_point).collect();
-        if within_bounds(&linkage, &points) {
+        let output = |at: &LoopJoints| match of {
+            Points::Places => linkage.slider_place(at),
+            Points::Angles => linkage.output_angle(at).map(f64::to_degrees),
+            _ => None,
+        };
+        let outputs: Vec<f64> = places.iter().filter_map(output).collect();
+        let is_within = match of.is_function() {
+            true => generates_within_bounds(&linkage, of, &outputs),
+            false => within_bounds(&linkage, &points),
+        };
+        if is_within {
             let frame = if of.is_motion() { uniform(draws, -PI, PI) } else { 0.0 };
             return Asked {
                 linkage,
                 points,
                 body_deg: places.iter().map(|at| (at.coupler.arg() + frame).to_degrees()).collect(),
                 crank_deg: angles.iter().map(|a| (a - from).to_degrees()).collect(),
+                outputs: outputs.iter().map(|output| output - outputs[0]).collect(),
             };
         }
     }
@@ -194,10 +245,26 @@ fn motion(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> Probl
     parse("motion.toml", &text, None, &[]).unwrap_or_else(|why| panic!("{why}")).spec
 }
 
+/// Returns the problem of a function.
+fn function(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> ProblemSpec {
+    let kinds: Vec<&str> = mechanism.iter().map(|kind| kind.name()).collect();
+    let key = if of == Points::Places { "output" } else { "output_deg" };
+    let text = format!(
+        "format = 1\n[task.function]\ninput_deg = {:?}\n{key} = {:?}\n[design]\nmechanism = {kinds:?}\n[solve]\n\
+         seed = {seed}\ncandidates = 1\nadvice = false\n",
+        asked.crank_deg, asked.outputs
+    );
+    parse("function.toml", &text, None, &[]).unwrap_or_else(|why| panic!("{why}")).spec
+}
+
 /// Searches for a target, and returns the kind, the rms over the size (of poses with their angles) and the milliseconds of
 /// the search.
 fn search(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> (Option<LoopKind>, f64, f64) {
-    let of_task = if of.is_motion() { motion } else { path };
+    let of_task = match (of.is_motion(), of.is_function()) {
+        (true, _) => motion,
+        (_, true) => function,
+        _ => path,
+    };
     let spec = of_task(asked, of, mechanism, seed);
     let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
     let finished = run(&Job::new("sliders", spec), &context).expect("a search");
@@ -213,9 +280,12 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
     let value = |name: &str| arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
     let seed: u64 = value("--seed").and_then(|s| s.parse().ok()).unwrap_or(1);
+    let only: Option<usize> = value("--only").and_then(|n| n.parse().ok());
+    let of_options = [value("--seed"), value("--only")];
+    let cases = |count: usize| only.map_or(0..count, |n| n..n + 1);
     let show = arguments.iter().any(|a| a == "--show");
     let plain: Vec<&String> =
-        arguments.iter().filter(|a| !a.starts_with("--") && Some(*a) != value("--seed")).collect();
+        arguments.iter().filter(|a| !a.starts_with("--") && !of_options.contains(&Some(a))).collect();
     let filter = plain.iter().find(|a| a.parse::<usize>().is_err()).map_or("", |a| a.as_str());
     let count: Option<usize> = plain.iter().find_map(|a| a.parse().ok());
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("a pool");
@@ -225,9 +295,9 @@ fn main() {
     for (name, of) in Points::ALL {
         for kind in sliders {
             let class = format!("{name} {kind}");
-            if class.contains(filter) {
+            if class.contains(filter) && of.suits(kind) {
                 seen += 1;
-                let each = (0..count.unwrap_or(200)).map(|case| {
+                let each = cases(count.unwrap_or(200)).map(|case| {
                     let mut draws = stream(seed, case as u64);
                     (kind, target(kind, of, &mut draws))
                 });
@@ -243,9 +313,9 @@ fn main() {
             let kind = kinds[case % 4];
             (kind, target(kind, Points::Closed, &mut stream(seed, 1000 + case as u64)))
         };
-        let cases = count.unwrap_or(40);
-        row("mixed, their own kind alone", (0..cases).map(each), Points::Closed, &[], show);
-        row("mixed, all kinds", (0..cases).map(each), Points::Closed, &LoopKind::ALL, show);
+        let mixed = || cases(count.unwrap_or(40));
+        row("mixed, their own kind alone", mixed().map(each), Points::Closed, &[], show);
+        row("mixed, all kinds", mixed().map(each), Points::Closed, &LoopKind::ALL, show);
     }
     assert!(seen > 0, "no class has {filter} in its name");
 }

@@ -146,6 +146,7 @@ def function(
     over: Any = None,
     input_range_deg: Any = None,
     output_range_deg: Any = None,
+    output_range: float | None = None,
     samples: int | None = None,
     file: str | os.PathLike[str] | None = None,
     input_offset: str | None = None,
@@ -161,18 +162,21 @@ def function(
     source: str | None = None,
     unit: str | None = None,
 ) -> Problem:
-    """Makes a problem of a function to generate: the output link's angle for the crank's.
+    """Makes a problem of a function to generate: the output link's angle, or a slider's place, for the crank's angle.
 
     Args:
         input_deg: how far the crank has turned, degrees, shape (n,).
-        output_deg: how far the follower has turned, degrees, shape (n,). (`output`, a slider's places, is still to come.)
+        output_deg: how far the follower has turned, degrees, shape (n,).
+        output: how far a slider has moved, lengths, shape (n,), in place of ``output_deg``.
         of, over, samples: a formula such as ``"log10(x)"`` in place of a table.
         input_range_deg, output_range_deg: how far crank and follower turn over the formula's range, degrees; ``"free"``
             or ``[least, greatest]``, also of a table: that is found too.
+        output_range: how far a slider moves over the formula's range, a length, in place of ``output_range_deg``.
         file: a CSV file in place of a table.
         input_offset, output_offset: ``"free"`` or ``"ground"``.
         sense: ``"same"``, ``"opposite"`` or ``"any"``.
-        tolerance, tolerance_deg, weight: the largest errors accepted, and weights.
+        tolerance, tolerance_deg, weight: the largest errors accepted (lengths of ``output``, degrees of ``output_deg``), and
+            weights.
         design, require, solve, name, source, unit: as for :func:`path`.
 
     Raises:
@@ -186,8 +190,8 @@ def function(
     """
     task = {
         "input_deg": input_deg, "output_deg": output_deg, "output": output, "of": of, "over": over,
-        "input_range_deg": input_range_deg, "output_range_deg": output_range_deg, "samples": samples,
-        "file": file, "input_offset": input_offset, "output_offset": output_offset, "sense": sense,
+        "input_range_deg": input_range_deg, "output_range_deg": output_range_deg, "output_range": output_range,
+        "samples": samples, "file": file, "input_offset": input_offset, "output_offset": output_offset, "sense": sense,
         "tolerance": tolerance, "tolerance_deg": tolerance_deg, "weight": weight,
     }  # fmt: skip
     return _problem(

@@ -25,8 +25,8 @@ class Candidate:
     Any key of a candidate in the record is an attribute: ``error``, ``type``, ``transmission_deg``, ``accepted``,
     ``warnings``, ``requirements``, ``crank_deg``, ``t1_at``, ``link_ratio``, ``grashof_margin``, ``defects``, ..; of a
     motion ``frame_deg`` too, the angle from C -> D to the body's x axis; of a function ``input_offset_deg``,
-    ``output_offset_deg`` (the angles of crank and follower from the line A -> B at an input and an output of 0), ``sense`` and,
-    where ranges are free, ``input_range_deg`` and ``output_range_deg``.
+    ``output_offset_deg`` (the angles of crank and follower from the line A -> B at an input and an output of 0), or of a slider
+    ``output_offset`` (its place at an output of 0), ``sense`` and, where ranges are free, ``input_range_deg`` and ``output_range_deg``.
     """
 
     __slots__ = ("data", "result", "which")

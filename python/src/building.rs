@@ -4,9 +4,10 @@ use linkwright::internals::app::inputs::Given;
 use linkwright::internals::judge::practicality::clearance::Build;
 use linkwright::internals::judge::practicality::sensitivity::Dimension;
 use linkwright::internals::judge::practicality::{Closest, Practicality, usual_tolerance};
+use linkwright::internals::mechanism::OneLoop;
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::practicality::practicality_text;
-use linkwright::{FourBar, Problem, Unit};
+use linkwright::{Problem, Unit};
 use serde_json::{Value, json};
 
 /// Examines a linkage; sizes that are not given are the usual ones.
@@ -19,27 +20,22 @@ pub fn built(
     margin: Option<f64>,
     tolerance: Option<f64>,
 ) -> Result<(Value, String), String> {
-    let made = |linkage: &FourBar, unit: Option<Unit>| {
+    let made = |linkage: OneLoop, unit: Option<Unit>| {
         let hole = hole.unwrap_or_else(|| Build::usual_hole(linkage, unit));
         Build::new(hole, margin.unwrap_or(hole))
     };
     let (title, linkage, unit, found) = match given {
         Given::Linkage(file) => {
-            let found = Practicality::of_linkage(&file.linkage, made(&file.linkage, file.unit));
-            (file.name.clone(), file.linkage, file.unit, found)
+            let linkage = OneLoop::from(file.linkage);
+            let found = Practicality::of_linkage(linkage, made(linkage, file.unit));
+            (file.name.clone(), linkage, file.unit, found)
         }
         Given::Run(run) => {
             let chosen = run.one().map_err(|e| e.to_string())?;
             let problem = Problem::new(run.record.problem.resolved.clone()).map_err(|e| e.to_string())?;
             let unit = run.record.problem.unit;
-            let Some(&linkage) = chosen.candidate.linkage.four_bar() else {
-                let kind = chosen.candidate.linkage.kind();
-                return Err(format!(
-                    "{} is a {kind}, and plates and layers are computed for four-bars alone",
-                    chosen.label
-                ));
-            };
-            let found = Practicality::of_candidate(&problem, chosen.candidate, made(&linkage, unit));
+            let linkage = chosen.candidate.linkage;
+            let found = Practicality::of_candidate(&problem, chosen.candidate, made(linkage, unit));
             (chosen.label.clone(), linkage, unit, found)
         }
     };

@@ -1,6 +1,6 @@
 //! Points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`, of poses
 //! also `angle_deg` and `tolerance_deg`; of a function's pairs `input_deg,output_deg` and optionally `weight`,
-//! `tolerance_deg`; `#` comments.
+//! `tolerance_deg`, or `input_deg,output` (places of a slider) and optionally `weight`, `tolerance`; `#` comments.
 
 use crate::files::diagnostic::{Checked, Diagnostic, counted, quoted};
 use crate::files::input_text;
@@ -19,6 +19,9 @@ const COLUMNS: Layout = Layout {
 /// The columns of a file of pairs.
 const PAIRS: Layout =
     Layout { columns: ["input_deg", "output_deg", "", "weight", "", "", "tolerance_deg"], one: "pair" };
+/// The columns of a file of pairs whose outputs are places of a slider.
+const PLACES: Layout =
+    Layout { columns: ["input_deg", "output", "", "weight", "tolerance", "", ""], one: "pair" };
 /// The columns whose cells may be empty.
 const ANGLE: usize = 5;
 const CRANK: usize = 2;
@@ -58,6 +61,8 @@ pub struct PointsFile {
     pub tolerance_deg: Option<Vec<f64>>,
     /// The place of each point's row in the text.
     pub rows: Vec<Range<usize>>,
+    /// Whether the outputs of pairs are places of a slider.
+    pub of_places: bool,
     /// Warnings about ignored columns.
     pub warnings: Vec<Diagnostic>,
 }
@@ -76,8 +81,12 @@ pub fn holds_pairs(path: &Path) -> bool {
 /// Returns whether the header of a file names a column.
 fn has_column(path: &Path, name: &str) -> bool {
     let text = if path.is_file() { input_text::read(path).unwrap_or_default() } else { String::new() };
-    let text = input_text::without_mark(&text);
-    let header = Rows::new("", text).header().ok().flatten();
+    names_column(&text, name)
+}
+
+/// Returns whether the header of a text names a column.
+fn names_column(text: &str, name: &str) -> bool {
+    let header = Rows::new("", input_text::without_mark(text)).header().ok().flatten();
     header.is_some_and(|header| header.cells.iter().any(|cell| cell.eq_ignore_ascii_case(name)))
 }
 
@@ -107,11 +116,16 @@ pub fn load_pairs(path: &Path) -> Result<PointsFile, Box<Diagnostic>> {
     parse_pairs(&path.display().to_string(), &text)
 }
 
-/// Reads the pairs of a function from a text; `file` is shown in diagnostics.
+/// Reads the pairs of a function from a text; `file` is shown in diagnostics. The outputs are angles in a column `output_deg`
+/// or places of a slider in a column `output`.
 ///
 /// # Errors
 /// A [`Diagnostic`] that points at the row and cell at fault.
 pub fn parse_pairs(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
+    let [of_angles, of_places] = [PAIRS, PLACES].map(|layout| names_column(text, layout.columns[1]));
+    if of_places && !of_angles {
+        return Ok(PointsFile { of_places: true, ..parse_as(&PLACES, file, text)? });
+    }
     parse_as(&PAIRS, file, text)
 }
 
@@ -186,6 +200,7 @@ fn parse_as(layout: &Layout, file: &str, text: &str) -> Result<PointsFile, Box<D
         tolerance,
         angle_deg,
         tolerance_deg,
+        of_places: false,
         rows,
         warnings,
     })

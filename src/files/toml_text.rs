@@ -17,9 +17,6 @@ pub(crate) struct TomlText<'a> {
     pub text: &'a str,
 }
 
-/// The keys of `[task.function]` that are known but not supported yet.
-const FUNCTION_TO_COME: [&str; 1] = ["output"];
-
 /// A key, or an item of a list, with its places in the text.
 struct Place<'p> {
     /// The names of the keys and the indices of the items that lead to it, its own last.
@@ -168,11 +165,6 @@ impl<'a> TomlText<'a> {
     }
 
     fn unknown_key(&self, key: &str, allowed: &[&str], span: Option<&Range<usize>>) -> Diagnostic {
-        if FUNCTION_TO_COME.contains(&key) && allowed.contains(&"output_deg") {
-            return self.about_file(format!("{key} is not supported yet in [task.function]")).with_help(
-                "the output is the follower's angle: write output_deg; a slider as output is still to come",
-            );
-        }
         if key == "task" && allowed.contains(&"vector_loop") {
             return self.about_file("this is a problem file, not a linkage file").with_help(
                 "`linkwright synth` runs it; a linkage file has [linkage], [vector_loop], [slider_crank], \

@@ -14,7 +14,7 @@ use crate::record::{
 use crate::task::ranges::Reference;
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::{Limits, Objective, TransmissionOver};
-use crate::task::{AngleOffset, Problem, Sense};
+use crate::task::{AngleOffset, Body, Problem, Sense};
 
 pub use crate::record::MET_TOLERANCE;
 
@@ -95,6 +95,7 @@ pub fn assess_on_curve(
         max_at: angle.max_at,
     });
     let is_function = task.is_function();
+    let is_of_places = task.body().is_some_and(Body::is_of_places);
     let given_frame =
         || error.angle.as_ref().map(|angle| own.map_or(angle.frame.to_degrees(), |own| own.frame_deg));
     let [input_range_deg, output_range_deg] = ranges_deg(problem, crank_deg, &error);
@@ -106,7 +107,8 @@ pub fn assess_on_curve(
         t1_at: assemblies.to_vec(),
         frame_deg: given_frame().filter(|_| !is_function),
         input_offset_deg: offsets_deg.map(|[input, _]| input),
-        output_offset_deg: offsets_deg.map(|[_, output]| output),
+        output_offset_deg: offsets_deg.map(|[_, output]| output).filter(|_| !is_of_places),
+        output_offset: offsets_deg.map(|[_, output]| output).filter(|_| is_of_places),
         input_range_deg,
         output_range_deg,
         sense: error.angle.as_ref().filter(|_| is_function).map(|angle| Sense::of(angle.sign)),
@@ -122,7 +124,7 @@ pub fn assess_on_curve(
             rms_over_size: rms / (error.scale() * task.error_size()),
             to_curve,
             angle: of_link.filter(|_| !is_function),
-            output: of_link.filter(|_| is_function),
+            output: of_link.filter(|_| is_function && !is_of_places),
             to_raw: None,
         },
         linkage_type: mobility.linkage_type,
@@ -150,8 +152,8 @@ pub fn assess_on_curve(
     Some(candidate)
 }
 
-/// Returns the angles of crank and follower from the line A-B at an input and an output of 0 in a function, degrees; `None` of
-/// another task.
+/// Returns the angles of crank and follower from the line A-B at an input and an output of 0 in a function, degrees; of a
+/// slider the place at an output of 0, in the sense of the outputs, in place of the second. `None` of another task.
 fn offsets_deg(
     problem: &Problem,
     linkage: &OneLoop,
@@ -167,6 +169,9 @@ fn offsets_deg(
             within_half_a_turn(crank_deg[0] - scale * given.crank_deg[0] - ground_deg)
         }
     };
+    if problem.task().body()?.is_of_places() {
+        return Some([input, -angle.frame.to_degrees() * angle.sign]);
+    }
     let output_from_ground = problem.task().body()?.given_frame(0.0).is_some();
     let output =
         if output_from_ground { 0.0 } else { within_half_a_turn(-angle.frame.to_degrees() - ground_deg) };

@@ -2,11 +2,10 @@
 
 use crate::mechanism::effort::{POINTS_AT_ONCE, computed};
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
-use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, LoopJoints, OneLoop};
+use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, OneLoop};
 use crate::record::{Candidate, CurveErrorRecord};
 use crate::task::ranges::Reference;
-use crate::task::{Body, Link, Problem, Task, best_frame};
+use crate::task::{Body, Problem, Task};
 use rayon::prelude::*;
 
 /// The errors at the positions of the targets: T_j - P_j of the place, and of the angle in a motion.
@@ -49,7 +48,7 @@ pub struct AngleError {
 }
 
 impl AngleError {
-    /// Returns the errors of a link in directions `lines` (radians), one a target, whose angles count from `own`; without it,
+    /// Returns the errors of a link at its measures `lines` (radians), one a target, whose angles count from `own`; without it,
     /// from `frame` if that is given, and so that the weighted sum of squares is least. Of two senses that are allowed it is the one of the lesser weighted sum of squares.
     fn of(
         body: &Body,
@@ -84,9 +83,9 @@ impl AngleError {
             .collect();
         let frame = frame
             .or(own.map(|own| own.frame_deg.to_radians()))
-            .unwrap_or_else(|| best_frame(&apart, weights));
+            .unwrap_or_else(|| body.best_frame(&apart, weights));
         let structural: Vec<Option<f64>> =
-            apart.iter().map(|apart| apart.map(|a| wrapped(a - frame))).collect();
+            apart.iter().map(|apart| apart.map(|a| body.apart(a - frame))).collect();
         let (mut sum_sq, mut count, mut max, mut max_at) = (0.0, 0_usize, 0.0_f64, None);
         for (j, error) in structural.iter().enumerate() {
             let Some(error) = error else { continue };
@@ -187,16 +186,12 @@ impl Task {
         };
         let mut lines = Vec::new();
         for j in 0..self.len() {
-            let LoopJoints { joints, coupler } = linkage.joints_with(crank_angles[j], assemblies[j])?;
+            let at = linkage.joints_with(crank_angles[j], assemblies[j])?;
             if let Some(body) = self.body() {
-                let line = match body.link {
-                    Link::Coupler => coupler,
-                    Link::Follower { .. } => joints.follower_pin - linkage.four_bar()?.follower_pivot(),
-                };
-                lines.push(line.arg());
+                lines.push(body.measured(&linkage, &at)?);
             }
             let Some(&target) = self.points().get(j) else { continue };
-            let difference = target - joints.coupler_point;
+            let difference = target - at.joints.coupler_point;
             let sq = difference.norm_sqr();
             error.structural.push(difference);
             error.objective += self.weights()[j] * sq;

@@ -95,7 +95,7 @@ fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&
             }
         }
         (Figure::Number(value), Figure::Number(limit))
-            if !(RequirementKind::names_tolerance(name) || RequirementKind::names_line(name))
+            if !(RequirementKind::names_tolerance(name) || RequirementKind::names_equality(name))
                 && on(*value, *limit) =>
         {
             each(name, "", *value, *limit);

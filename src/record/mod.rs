@@ -273,12 +273,16 @@ pub struct Candidate {
     /// In a motion: the angle from the direction C -> D to the body's x axis, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame_deg: Option<f64>,
-    /// In a function: the crank's angle from the ground line A -> B at an input of zero, degrees.
+    /// In a function: the crank's angle from the ground line A -> B, or a slider-crank's line, at an input of zero, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub input_offset_deg: Option<f64>,
     /// In a function: the follower's angle from the ground line A -> B at an output of zero, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output_offset_deg: Option<f64>,
+    /// In a function of a slider's places: the place at an output of zero, in the sense of the outputs; of a slider-crank from
+    /// the foot of the perpendicular from A on the line, of an inverted one from C along the coupler.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub output_offset: Option<f64>,
     /// In a function with a free input range: the angle that the crank turns through, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub input_range_deg: Option<f64>,
@@ -286,7 +290,8 @@ pub struct Candidate {
     /// the greatest, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output_range_deg: Option<f64>,
-    /// In a function: the sense in which output angles count.
+    /// In a function: the sense in which output angles count; of a slider's places `same` along its line (of a block along the
+    /// coupler from C) and `opposite` against it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sense: Option<Sense>,
     /// How far the coupler point is from the target.
@@ -334,7 +339,8 @@ impl Candidate {
     /// to the body's x axis; in a function from the follower's direction to that of an output of zero.
     pub fn own_frame_deg(&self) -> Option<f64> {
         let of_output = || Some(-(self.output_offset_deg? + self.linkage.ground_angle().to_degrees()));
-        self.frame_deg.or_else(of_output)
+        // A place is written as the angle of as many degrees.
+        self.frame_deg.or_else(of_output).or_else(|| Some(-self.output_offset? * self.sense?.signs()[0]))
     }
 
     /// Returns the scales of the inputs and the outputs of a function as its task writes them: 1 unless their range is free.

@@ -21,10 +21,11 @@ impl Part {
     pub(super) const ALL: [Part; 2] = [Part::Place, Part::Angle];
 
     /// Returns the requirement that limits it.
-    pub(super) fn tolerance(self) -> RequirementKind {
+    pub(super) fn tolerance(self, task: &TaskSpec) -> RequirementKind {
         match self {
-            Part::Place => RequirementKind::Tolerance,
-            Part::Angle => RequirementKind::ToleranceDeg,
+            Part::Angle if !task.is_of_places() => RequirementKind::ToleranceDeg,
+            Part::Place if task.is_of_places() => RequirementKind::ToleranceDeg,
+            Part::Place | Part::Angle => RequirementKind::Tolerance,
         }
     }
 }
@@ -33,19 +34,21 @@ impl Part {
 /// the loop is open, or the target has no angle.
 pub(super) fn error(task: &TaskSpec, candidate: &Candidate, target: usize, part: Part) -> Option<f64> {
     let (angle, assembly) = (candidate.crank_deg.get(target)?, candidate.t1_at.get(target)?);
-    let LoopJoints { joints, coupler } = candidate.linkage.joints_with(angle.to_radians(), *assembly)?;
+    let at = candidate.linkage.joints_with(angle.to_radians(), *assembly)?;
     match part {
         Part::Place => {
-            Some((crate::mechanism::point(*task.points.get(target)?) - joints.coupler_point).norm())
+            Some((crate::mechanism::point(*task.points.get(target)?) - at.joints.coupler_point).norm())
         }
         Part::Angle => {
-            let wanted = (*task.body.as_ref()?.angle_deg.get(target)?)?.to_radians();
-            if let Some(output) = output_deg(candidate, joints.follower_pin) {
+            let wanted = (*task.body.as_ref()?.angle_deg.get(target)?)?;
+            if let Some(output) = output(candidate, &at) {
                 let sign = candidate.sense?.signs()[0];
                 let wanted = candidate.scales(task)[1] * wanted;
-                return Some(wrapped(sign * wanted - output.to_radians()).abs().to_degrees());
+                return Some(apart(candidate, sign * wanted - output).abs());
             }
-            Some(wrapped(wanted - generated(coupler, candidate.frame_deg?)).abs().to_degrees())
+            Some(
+                wrapped(wanted.to_radians() - generated(at.coupler, candidate.frame_deg?)).abs().to_degrees(),
+            )
         }
     }
 }
@@ -56,10 +59,21 @@ pub(super) fn generated(coupler: Complex, frame_deg: f64) -> f64 {
     wrapped(coupler.arg() + frame_deg.to_radians())
 }
 
-/// Returns how far the follower of a function has turned from its angle at an output of 0, degrees counter-clockwise within
-/// half a turn, where its pin is; `None` for a candidate of another task.
-pub(super) fn output_deg(candidate: &Candidate, follower_pin: Complex) -> Option<f64> {
+/// Returns how far the output link of a function has moved from an output of 0 at a position: the follower or the block,
+/// degrees counter-clockwise within half a turn, or a slider along its line, a length. `None` for a candidate of another task.
+pub(super) fn output(candidate: &Candidate, at: &LoopJoints) -> Option<f64> {
     let linkage = &candidate.linkage;
-    let turned = (follower_pin - linkage.four_bar()?.follower_pivot()).arg() - linkage.ground_angle();
+    if let Some(offset) = candidate.output_offset {
+        return Some(linkage.slider_place(at)? - candidate.sense?.signs()[0] * offset);
+    }
+    let turned = linkage.output_angle(at)? - linkage.ground_angle();
     Some(wrapped(turned - candidate.output_offset_deg?.to_radians()).to_degrees())
+}
+
+/// Returns a difference of two outputs of a candidate: of angles (degrees) within half a turn, of places as it is.
+pub(super) fn apart(candidate: &Candidate, difference: f64) -> f64 {
+    match candidate.output_offset {
+        Some(_) => difference,
+        None => wrapped(difference.to_radians()).to_degrees(),
+    }
 }

@@ -5,7 +5,7 @@ use super::body;
 use super::scene::first_position;
 use super::text::{cell, exact, push_exact};
 use super::words;
-use crate::mechanism::{Complex, CouplerCurve, FourBar, Joints, LoopJoints, OneLoop};
+use crate::mechanism::{Complex, CouplerCurve, FourBar, Joints, LoopJoints, OneLoop, point};
 use crate::record::{Candidate, Member, Record};
 use crate::task::{Defect, TaskKind};
 
@@ -49,6 +49,10 @@ pub(super) const OF_FUNCTION: [Column<Candidate>; 3] = [
     ("output_offset_deg", |c| c.output_offset_deg.map_or(String::new(), exact)),
     ("sense", |c| c.sense.map_or(String::new(), |sense| words::sense(sense).to_owned())),
 ];
+
+/// As [`OF_FUNCTION`], of one of a slider's places.
+const OF_PLACES: [Column<Candidate>; 3] =
+    [OF_FUNCTION[0], ("output_offset", |c| c.output_offset.map_or(String::new(), exact)), OF_FUNCTION[2]];
 
 /// As [`OF_FUNCTION`], of one with a free range.
 pub(super) const OF_FREE_RANGES: [Column<Candidate>; 5] = [
@@ -104,6 +108,9 @@ pub const BODY_ANGLE: &str = "angle_deg";
 /// The column with the follower's angle in a function, from -180 to 180 degrees from its angle at an output of 0.
 pub const OUTPUT_ANGLE: &str = "output_deg";
 
+/// The column with the place of the slider in a function, from its place at an output of 0.
+pub const OUTPUT_PLACE: &str = "output";
+
 /// Returns one row for each candidate: every figure and parameter, defects as `order:3 7;branch:2` (points from 0), and
 /// the names of the requirements that are not met. Those of a motion have the errors of the angle too.
 pub fn candidates_csv(record: &Record) -> String {
@@ -113,6 +120,7 @@ pub fn candidates_csv(record: &Record) -> String {
         TaskKind::Function if task.output.as_ref().is_some_and(|output| output.ranges.is_free()) => {
             &OF_FREE_RANGES
         }
+        TaskKind::Function if task.is_of_places() => &OF_PLACES,
         TaskKind::Function => &OF_FUNCTION,
         TaskKind::Path => &[],
     };
@@ -198,6 +206,9 @@ pub fn candidate_curve_csv(candidate: &Candidate) -> String {
     if candidate.output_offset_deg.is_some() {
         text.push_str(&format!(",{OUTPUT_ANGLE}"));
     }
+    if candidate.output_offset.is_some() {
+        text.push_str(&format!(",{OUTPUT_PLACE}"));
+    }
     text.push('\n');
     for (row, coupler) in curve(candidate) {
         for number in row {
@@ -208,8 +219,10 @@ pub fn candidate_curve_csv(candidate: &Candidate) -> String {
             push_exact(&mut text, body::generated(coupler, frame_deg).to_degrees());
             text.push(',');
         }
-        let [.., dx, dy, _, _, _] = row;
-        if let Some(output) = body::output_deg(candidate, Complex::new(dx, dy)) {
+        let [.., cx, cy, dx, dy, px, py, _] = row;
+        let [crank_pin, follower_pin, coupler_point] = [[cx, cy], [dx, dy], [px, py]].map(point);
+        let at = LoopJoints { joints: Joints { crank_pin, follower_pin, coupler_point }, coupler };
+        if let Some(output) = body::output(candidate, &at) {
             push_exact(&mut text, output);
             text.push(',');
         }

@@ -2,8 +2,7 @@
 
 use super::canvas::{Area, Canvas, palette};
 use super::chart::{Abscissa, Chart, Range, Series};
-use super::words;
-use crate::mechanism::four_bar::mobility::wrapped;
+use super::{body, output, words};
 use crate::record::{Candidate, Record};
 use crate::task::Sense;
 use crate::task::spec::TaskSpec;
@@ -14,7 +13,7 @@ const SAMPLES: usize = 361;
 pub(super) const WIDTH: f64 = 880.0;
 const HEIGHT: f64 = 220.0;
 
-/// A pair of a function as a candidate generates it, angles in degrees.
+/// A pair of a function as a candidate generates it: angles in degrees, places in the file's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GeneratedPair {
     /// The input.
@@ -39,21 +38,21 @@ pub(super) fn pairs(task: &TaskSpec, candidate: &Candidate) -> Vec<GeneratedPair
     let [of_input, of_output] = candidate.scales(task);
     let pair = |([input, wanted], (crank_deg, t1)): ([f64; 2], (&f64, &crate::mechanism::AssemblyMode))| {
         let (input, wanted) = (of_input * input, of_output * wanted);
-        let turned = output(candidate, *crank_deg, *t1);
-        let generated = turned.map(|turned| wanted - wrapped((wanted - turned).to_radians()).to_degrees());
+        let turned = generated(candidate, *crank_deg, *t1);
+        let generated = turned.map(|turned| wanted - body::apart(candidate, wanted - turned));
         GeneratedPair { input, wanted, generated }
     };
     task.pairs().into_iter().zip(at).map(pair).collect()
 }
 
-/// Returns the output at a crank angle (degrees) in the sense in which outputs count, within half a turn.
-fn output(candidate: &Candidate, crank_deg: f64, t1: crate::mechanism::AssemblyMode) -> Option<f64> {
-    let joints = candidate.linkage.joints_with(crank_deg.to_radians(), t1)?.joints;
+/// Returns the output at a crank angle (degrees) in the sense in which outputs count; an angle within half a turn.
+fn generated(candidate: &Candidate, crank_deg: f64, t1: crate::mechanism::AssemblyMode) -> Option<f64> {
+    let at = candidate.linkage.joints_with(crank_deg.to_radians(), t1)?;
     let sign = if candidate.sense? == Sense::Opposite { -1.0 } else { 1.0 };
-    Some(sign * super::body::output_deg(candidate, joints.follower_pin)?)
+    Some(sign * body::output(candidate, &at)?)
 }
 
-/// Returns the generated function from its least to its greatest input, (input, output) in degrees; strands break where
+/// Returns the generated function from its least to its greatest input, (input, output); strands break where
 /// the linkage does not close.
 fn curve(candidate: &Candidate, pairs: &[GeneratedPair]) -> Vec<Vec<(f64, f64)>> {
     let (Some(first), Some(crank), Some(t1)) =
@@ -68,9 +67,9 @@ fn curve(candidate: &Candidate, pairs: &[GeneratedPair]) -> Vec<Vec<(f64, f64)>>
         pairs.iter().min_by(|one, other| one.input.total_cmp(&other.input)).map_or(0.0, |p| p.wanted);
     for i in 0..SAMPLES {
         let input = low + (high - low) * i as f64 / (SAMPLES - 1) as f64;
-        match output(candidate, crank + input - first.input, *t1) {
+        match generated(candidate, crank + input - first.input, *t1) {
             Some(turned) => {
-                let at = last - wrapped((last - turned).to_radians()).to_degrees();
+                let at = last - body::apart(candidate, last - turned);
                 last = at;
                 if let Some(strand) = strands.last_mut() {
                     strand.push((input, at));
@@ -96,8 +95,10 @@ pub(super) fn chart_svg(record: &Record, candidate: &Candidate) -> Option<String
     let mut canvas = Canvas::default();
     let height = charts(&mut canvas, record, candidate, Area { x: 0.0, y: 0.0, width: WIDTH, height: 0.0 })?;
     let title = format!("{}: the function", words::standing(record, candidate));
+    let (task, unit) = (&record.problem.resolved.task, words::error_unit(record));
     let description = format!(
-        "the follower's angle over the crank's, wanted and generated; errors {}° rms, {}° at most",
+        "the {} over the crank's angle, wanted and generated; errors {}{unit} rms, {}{unit} at most",
+        output::of(task, candidate),
         super::text::significant(candidate.error.rms, 4),
         super::text::significant(candidate.error.max, 4)
     );
@@ -122,16 +123,21 @@ pub(super) fn charts(canvas: &mut Canvas, record: &Record, candidate: &Candidate
     let generated = Series { name: "generated", colour: palette::CURVE, strands: curve(candidate, &pairs) };
     let wanted =
         Series { name: "wanted", colour: palette::TARGET, strands: spots(&|pair| Some(pair.wanted)) };
+    let is_of_places = task.is_of_places();
+    let unit = if is_of_places { output::length_name(record) } else { "degrees".into() };
     let outputs = Chart {
-        title: "Follower",
-        unit: "degrees turned, over the crank's".into(),
+        title: output::title(candidate),
+        unit: match is_of_places {
+            true => format!("{unit} moved, over the crank's degrees"),
+            false => "degrees turned, over the crank's".into(),
+        },
         series: vec![generated, wanted],
-        range: Range::Fitted { natural: 1.0, angle: true, unbounded: false },
+        range: Range::Fitted { natural: 1.0, angle: !is_of_places, unbounded: false },
         warning: Vec::new(),
     };
     let errors = Chart {
         title: "Error",
-        unit: "degrees, wanted less generated".into(),
+        unit: format!("{unit}, wanted less generated"),
         series: vec![Series { name: "error", colour: palette::TARGET, strands: error_strands(&pairs) }],
         range: Range::Fitted { natural: candidate.error.max.max(1e-9), angle: false, unbounded: false },
         warning: Vec::new(),

@@ -47,6 +47,7 @@
 //! | [`mechanism_text`] | an analysis of a linkage of any kind as text and as CSV |
 //! | [`parts`] | the parts of drawings of linkages: stands, bars, the coupler's triangle, letters |
 //! | [`picks`] | the picks beside the closest candidate, in words |
+//! | `output` | the words for the output of a function: the angle of a follower or a block, or the place of a slider |
 //! | [`plot`] | a small plot for the terminal: the target points and the coupler curve, with one scale for both axes |
 //! | [`practicality`] | the practicality of a linkage as text: layers, distances, sensitivities |
 //! | [`price`] | the costs of requirements and the relaxations that would help, in words |
@@ -87,6 +88,7 @@ pub mod html;
 mod labels;
 pub mod mechanism_sheet;
 pub mod mechanism_text;
+mod output;
 mod parts;
 mod picks;
 pub mod plot;

@@ -57,7 +57,9 @@ pub fn terminal_plot(record: &Record, index: usize, width: usize, height: usize,
         Glyphs::Ascii => ('@', 'o', "-", "  . coupler curve"),
     };
     let of_function = record.problem.resolved.task.is_function();
-    let of_pin = curve.replace("coupler curve", "way of the follower's pin");
+    let of_pin = curve.replace("coupler curve", "way of the output's pin");
+    let is_four_bar = record.candidates.first().is_none_or(|c| c.linkage.four_bar().is_some());
+    let of_pin = if is_four_bar { of_pin.replace("output's", "follower's") } else { of_pin };
     let curve = if of_function { of_pin.as_str() } else { curve };
     // Marking many points would hide the curve. The first one is marked last, so that no other one hides it.
     let every = scene.targets.len().div_ceil(MOST_MARKS);

@@ -9,9 +9,9 @@ use crate::judge::practicality::layers::{Layering, Passing, PinPlate, PlatePair,
 use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
 use crate::judge::practicality::sweep::Stretch;
 use crate::judge::practicality::{Build, Closest, Joint, Practicality};
-use crate::mechanism::Unit;
 use crate::mechanism::plates::{Link, Parts};
-use crate::task::TaskKind;
+use crate::mechanism::{LoopKind, Unit};
+use crate::task::{Output, TaskKind};
 
 /// The number of significant digits of lengths and rates.
 const DIGITS: usize = 3;
@@ -42,7 +42,12 @@ pub fn practicality_text(
         Some(distances) => out.push_str(&words.distances(distances, 2.0 * practicality.build.pin_radius)),
         None => out.push_str(OPEN),
     }
-    let moved = if practicality.kind == TaskKind::Function { "turns the follower" } else { "moves the path" };
+    let moved = match (practicality.output, practicality.sweep.linkage.kind()) {
+        (None, _) => "moves the path",
+        (Some(Output::Place), _) => "moves the slider",
+        (Some(Output::Angle), LoopKind::FourBar) => "turns the follower",
+        (Some(Output::Angle), _) => "turns the block",
+    };
     out.push_str(&words.head(&format!("How much a wrong dimension {moved}")));
     match &practicality.sensitivity {
         Some(felt) => out.push_str(&words.sensitivity(felt, practicality, tolerance)),
@@ -253,7 +258,7 @@ impl Words {
         ];
         let rows: Vec<&Dimension> = felt.dimensions.iter().chain(&felt.ground).collect();
         let grid = Grid::of(&rows, if practicality.at_points { &columns } else { &columns[..3] });
-        let mut out = indented(&shift(felt, practicality.kind));
+        let mut out = indented(&shift(felt, practicality));
         out.push_str(&grid.render(self.colour));
         out.push_str(&indented(&self.together(felt, practicality, tolerance)));
         out
@@ -265,7 +270,7 @@ impl Words {
         let (at_points, kind) = (practicality.at_points, practicality.kind);
         let most = if at_points { format!(" at {} {}", kind.noun(), felt.worst_at) } else { String::new() };
         let of_function = kind == TaskKind::Function;
-        let off = |value: f64| match of_function {
+        let off = |value: f64| match practicality.output == Some(Output::Angle) {
             true => format!("{}°", significant(value, DIGITS)),
             false => self.length(value),
         };
@@ -296,17 +301,16 @@ impl Words {
 }
 
 /// Returns the description of the table of sensitivities.
-pub(super) fn shift(felt: &Sensitivity, kind: TaskKind) -> String {
+pub(super) fn shift(felt: &Sensitivity, Practicality { kind, output, .. }: &Practicality) -> String {
     let alone = match felt.settled {
         0 => String::new(),
         n => format!(", and across the path at the {n} of {} points whose crank angle is free", felt.points),
     };
     let settled = (settles(felt.crank).to_owned() + &alone).replace("point", kind.noun());
-    if kind == TaskKind::Function {
+    if let Some(output) = output {
         let settled = settled.replace("pairs move", "outputs change");
-        return format!(
-            "Change of the output, in degrees, for an error of 1 in each dimension alone, {settled}."
-        );
+        let what = if *output == Output::Angle { "output, in degrees," } else { "slider's place" };
+        return format!("Change of the {what} for an error of 1 in each dimension alone, {settled}.");
     }
     format!("Shift of the path for an error of 1 in each dimension alone, {settled}.")
 }

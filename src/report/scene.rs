@@ -3,7 +3,7 @@
 use super::guide::Sliding;
 use super::{body, function};
 use crate::mechanism::{
-    AssemblyMode, Complex, CouplerCurve, Joints, LoopJoints, MAX_MAGNITUDE, OneLoop, point,
+    AssemblyMode, Complex, CouplerCurve, Joints, LoopJoints, MAX_MAGNITUDE, OneLoop, dot, point,
 };
 use crate::record::{Candidate, Record};
 use crate::task::spec::TaskSpec;
@@ -143,6 +143,9 @@ fn targets(
 /// Returns the places of the follower's pin at the outputs that are wanted of a function, each with its place at the one
 /// generated; none for another task.
 fn follower_pins(record: &Record, candidate: &Candidate) -> Vec<Target> {
+    if let Some(targets) = slider_pins(record, candidate) {
+        return targets;
+    }
     let (Some(linkage), Some(offset), Some(sense)) =
         (candidate.linkage.four_bar(), candidate.output_offset_deg, candidate.sense)
     else {
@@ -161,6 +164,26 @@ fn follower_pins(record: &Record, candidate: &Candidate) -> Vec<Target> {
         reached_angle: None,
     };
     pairs.iter().enumerate().map(target).collect()
+}
+
+/// Returns the places of a slider-crank's slider at the outputs that are wanted, each with the one generated; `None` for
+/// another task or kind.
+fn slider_pins(record: &Record, candidate: &Candidate) -> Option<Vec<Target>> {
+    let linkage = candidate.linkage.slider_crank()?;
+    let (offset, sign) = (candidate.output_offset?, candidate.sense?.signs()[0]);
+    let along = linkage.line_direction();
+    let foot =
+        linkage.line_point() + along * dot(candidate.linkage.crank_pivot() - linkage.line_point(), along);
+    let at = |output: f64| foot + along * (sign * (offset + output));
+    let target = |(index, pair): (usize, &function::GeneratedPair)| Target {
+        index,
+        at: at(pair.wanted),
+        reached: pair.generated.map(at),
+        angle: None,
+        reached_angle: None,
+    };
+    let pairs = function::pairs(&record.problem.resolved.task, candidate);
+    Some(pairs.iter().enumerate().map(target).collect())
 }
 
 /// Returns the crank angle (radians) and assembly at each point that has both.

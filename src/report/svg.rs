@@ -7,10 +7,10 @@ use super::canvas::{
     Anchor, Area, Canvas, Frame, ROUND_ENDS, Spot, View, filled, font, outline, palette, stroke,
 };
 use super::figure::{Detail, draw};
-use super::function;
 use super::scene::{SAMPLES, Scene, circuits};
 use super::text::{brief, capitalised, clean, shortened, significant, text_width};
 use super::words;
+use super::{function, output};
 use crate::record::{Candidate, Record};
 use crate::task::TaskKind;
 use crate::task::spec::{TaskSpec, TransmissionOver};
@@ -142,7 +142,7 @@ fn legend(canvas: &mut Canvas, y: f64, with_curve: bool, task: &TaskSpec) {
     if with_curve {
         let curve = match task.kind() {
             TaskKind::Motion => "curve of its point",
-            TaskKind::Function => "way of the follower's pin",
+            TaskKind::Function => "way of the output's pin",
             TaskKind::Path => "coupler curve",
         };
         x -= text_width(curve, 12.0);
@@ -235,7 +235,11 @@ fn caption(
     } else {
         lines.push("no linkage to draw".to_owned());
     }
-    lines.extend(candidate.and_then(words::offsets).map(|said| capitalised(&said)));
+    lines.extend(
+        candidate
+            .and_then(|c| output::offsets(c, &words::unit_suffix(record)))
+            .map(|said| capitalised(&said)),
+    );
     lines.extend(candidate.map(beside::warnings).filter(|text| !text.is_empty()));
     let y = |i: usize| top + 19.0 * i as f64;
     lines.iter().enumerate().for_each(|(i, text)| line(canvas, y(i), palette::INK, text));

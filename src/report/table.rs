@@ -6,11 +6,11 @@ use super::grid::{Cell, Colour, Column, Grid, Ink, plain, verdict};
 use super::text::{
     COLUMNS, NO_NUMBER, brief, clean, exact, grouped, indented, shortened, significant, wrapped,
 };
-use super::{price, words};
-use crate::mechanism::{OneLoop, Unit};
+use super::{output, price, words};
+use crate::mechanism::{LoopKind, OneLoop, Unit};
 use crate::record::{AngleErrorRecord, Candidate, ErrorRecord, Record};
-use crate::task::spec::{Measure, TaskSpec};
-use crate::task::{Defect, Sense, TaskKind};
+use crate::task::spec::{Measure, ProblemSpec, TaskSpec};
+use crate::task::{Defect, TaskKind};
 
 /// The largest number of candidates whose distances from the given points are stated.
 const RAW_NAMED: usize = 3;
@@ -59,7 +59,7 @@ pub(super) fn facts(record: &Record) -> String {
     let path = &record.problem.resolved.task;
     let mut facts = vec![count(path.len(), path.noun())];
     facts.extend(without_angle(path));
-    facts.extend(ranges(path));
+    facts.extend(ranges(&record.problem.resolved, &words::unit_suffix(record)));
     if let Ok(task) = path.to_task()
         && !path.is_function()
     {
@@ -87,16 +87,18 @@ fn without_angle(task: &TaskSpec) -> Option<String> {
 }
 
 /// Returns how far the links of a function turn: `log10(x) over 1 to 2, crank 60°, follower 30 to 180°`.
-fn ranges(task: &TaskSpec) -> Option<String> {
-    let output = task.output.as_ref()?;
-    let [input, follower] = [0, 1].map(|which: usize| match output.ranges.bounds_deg()[which] {
+fn ranges(spec: &ProblemSpec, unit: &str) -> Option<String> {
+    let output = spec.task.output.as_ref()?;
+    let task = &spec.task;
+    let units = ["°", if task.is_of_places() { unit } else { "°" }];
+    let [input, moved] = [0, 1].map(|which: usize| match output.ranges.bounds_deg()[which] {
         Some([low, high]) => format!("{} to {}°", brief(low, 5), brief(high, 5)),
-        None => format!("{}°", brief(task.written_ranges_deg()[which], 5)),
+        None => format!("{}{}", brief(task.written_ranges_deg()[which], 5), units[which]),
     });
     let formula = output.of.as_ref().map_or(String::new(), |of| {
         format!("{} over {} to {}, ", clean(&of.formula), brief(of.over[0], 5), brief(of.over[1], 5))
     });
-    Some(format!("{formula}crank {input}, follower {follower}"))
+    Some(format!("{formula}crank {input}, {} {moved}", output::link(spec)))
 }
 
 pub(super) fn count(n: usize, noun: &str) -> String {
@@ -173,7 +175,8 @@ fn rows_of_function(record: &Record, colour: Colour) -> String {
     let ranks = words::minimised_in(record);
     let size = record.problem.resolved.task.to_task().map_or(1.0, |task| task.error_size());
     let error = |value: f64, digits| significant(value, if value < EXACT * size { 1 } else { digits });
-    let degrees = |value: f64| plain(error(value, 4) + "°");
+    let (spec, unit) = (&record.problem.resolved, words::error_unit(record));
+    let of_output = |value: f64| plain(error(value, 4) + &unit);
     let from = |deg: Option<f64>, through: Option<f64>| {
         let through = through.map_or_else(String::new, |range| format!(" +{range:.2}°"));
         plain(deg.map_or(NO_NUMBER.to_owned(), |deg| format!("{deg:.2}°{through}")))
@@ -187,11 +190,14 @@ fn rows_of_function(record: &Record, colour: Colour) -> String {
                 let value = objective(c);
                 plain(significant(value, if value < EXACT * size * size * EXACT { 1 } else { 5 }))
             }),
-            (Right, "rms", &|c| degrees(c.error.rms)),
-            (Right, "max", &|c| degrees(c.error.max)),
+            (Right, "rms", &|c| of_output(c.error.rms)),
+            (Right, "max", &|c| of_output(c.error.max)),
             (Right, "at", &|c| plain(worst_at(record, c).to_string())),
             (Right, "crank", &|c| from(c.input_offset_deg, c.input_range_deg)),
-            (Right, "follower", &|c| from(c.output_offset_deg, c.output_range_deg)),
+            (Right, output::link(spec), &|c| match c.output_offset {
+                Some(place) => plain(significant(place, 5) + &unit),
+                None => from(c.output_offset_deg, c.output_range_deg),
+            }),
             (Left, "type", &|c| plain(c.type_name())),
             (Right, "transm.", &|c| plain(transmission(c))),
             (Right, "ratio", &|c| plain(significant(c.link_ratio, 3))),
@@ -251,6 +257,19 @@ fn notes(record: &Record) -> String {
 
 /// Returns the meaning of the columns but the objective and the ratio.
 fn columns(record: &Record) -> &'static str {
+    if record.problem.resolved.task.is_of_places() {
+        return "rms, max: errors of the slider's place, at which pair (from 0) the largest. crank: its angle from the line of \
+                the slider, or A-B, at an input of 0; then the slider's place at an output of 0, from the foot of the \
+                perpendicular from A on its line; of an inverted slider-crank the block's along the rod from C. transm.: the \
+                worst transmission angle, from 0 to 90°, over the crank's full turn (cycle) or between the pairs (used).";
+    }
+    if record.problem.resolved.design.searches(LoopKind::InvertedSliderCrank)
+        && record.problem.resolved.task.is_function()
+    {
+        return "rms, max: errors of the angle of the follower, or of the block, degrees, at which pair (from 0) the largest. \
+                crank and the next: their angles from the line A-B at an input and an output of 0. transm.: the worst \
+                transmission angle, from 0 to 90°, over the crank's full turn (cycle) or between the pairs (used).";
+    }
     if record.problem.resolved.task.is_function() {
         return "rms, max: errors of the follower's angle, degrees, at which pair (from 0) the largest. crank, follower: \
                 their angles from the line A-B at an input and an output of 0, + the range that they turn through where it is \
@@ -294,18 +313,10 @@ pub(super) fn against_raw(record: &Record) -> Option<String> {
 fn best(record: &Record) -> String {
     let Some(candidate) = record.candidates.first() else { return String::new() };
     let motion = motion(candidate).map_or(String::new(), |motion| format!(": {motion}"));
-    let follower = follower_from(candidate).map_or(String::new(), |said| format!("; {said}"));
+    let follower = output::starts_from(candidate, &words::unit_suffix(record))
+        .map_or(String::new(), |said| format!("; {said}"));
     let motion = motion + &follower;
     format!("\n  Best linkage (#{}){motion}\n{}", candidate.rank, linkage_toml(&candidate.linkage))
-}
-
-/// Returns where the follower of a function starts: `follower from 61.5°, counter-clockwise as its outputs rise`.
-fn follower_from(candidate: &Candidate) -> Option<String> {
-    let from = candidate.output_offset_deg? + candidate.linkage.ground_angle().to_degrees();
-    let way = if candidate.sense? == Sense::Opposite { "clockwise" } else { "counter-clockwise" };
-    let through =
-        candidate.output_range_deg.map_or_else(String::new, |range| format!(" through {}°", brief(range, 5)));
-    Some(format!("follower from {}°{through}, {way} as outputs rise", brief(from, 5)))
 }
 
 /// Returns the motion of the crank: `crank from 31.102° to 371.1°, counter-clockwise`, `crank from 31.1° to 141°,

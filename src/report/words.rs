@@ -6,7 +6,7 @@ use crate::mechanism::Unit;
 use crate::record::{Candidate, Figure, Pick, Reason, Record, Requirement};
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::{BodySpec, Measure, TaskSpec, TransmissionOver};
-use crate::task::{AngleOffset, Defect, Sense, TaskKind};
+use crate::task::{AngleOffset, Defect, Output, Sense, TaskKind};
 
 /// An objection: one reason why a candidate is not accepted.
 pub(super) struct Objection {
@@ -28,7 +28,8 @@ pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objectio
     let mut list: Vec<Objection> = unmet
         .filter(|r| !forbidden(record, candidate).any(|defect| defect.name() == r.name))
         .map(|r| {
-            let pointed = part_of(r).and_then(|part| of_tolerance(record, candidate, part));
+            let pointed = part_of(&record.problem.resolved.task, r)
+                .and_then(|part| of_tolerance(record, candidate, part));
             pointed.unwrap_or_else(|| of_requirement(r))
         })
         .collect();
@@ -48,12 +49,12 @@ fn forbidden<'a>(record: &Record, candidate: &'a Candidate) -> impl Iterator<Ite
 }
 
 fn is_tolerance(requirement: &Requirement) -> bool {
-    part_of(requirement).is_some()
+    RequirementKind::names_tolerance(&requirement.name)
 }
 
 /// Returns the part of the error that a tolerance limits; `None` for any other requirement.
-fn part_of(requirement: &Requirement) -> Option<Part> {
-    Part::ALL.into_iter().find(|part| part.tolerance().name() == requirement.name)
+fn part_of(task: &TaskSpec, requirement: &Requirement) -> Option<Part> {
+    Part::ALL.into_iter().find(|part| part.tolerance(task).name() == requirement.name)
 }
 
 /// Returns a text on the targets of a task: its word "point" is "pose" in a motion.
@@ -191,7 +192,7 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
     let (rank, noun, point) = (best.rank, record.problem.resolved.task.noun(), worst.point);
     let (an_error, unit) = match worst.part {
         Part::Place => ("an error", unit_suffix(record)),
-        Part::Angle if record.problem.resolved.task.is_function() => ("an error", "°".to_owned()),
+        Part::Angle if record.problem.resolved.task.is_function() => ("an error", error_unit(record)),
         Part::Angle => ("an angle error", "°".to_owned()),
     };
     let [error, allowed, excess] =
@@ -227,17 +228,19 @@ fn of_tolerance(record: &Record, candidate: &Candidate, part: Part) -> Option<Ob
     let sentence = match part {
         Part::Place => format!("error {shown} at {noun} {point}, tolerance {allowed}"),
         Part::Angle if record.problem.resolved.task.is_function() => {
-            format!("error {shown}° at {noun} {point}, tolerance {allowed}°")
+            let unit = error_unit(record);
+            format!("error {shown}{unit} at {noun} {point}, tolerance {allowed}{unit}")
         }
         Part::Angle => format!("angle error {shown}° at {noun} {point}, tolerance {allowed}°"),
     };
-    let key = part.tolerance().definition().short.to_owned();
+    let key = part.tolerance(&record.problem.resolved.task).definition().short.to_owned();
     (error - tolerance > 0.0).then_some(Objection { key, sentence })
 }
 
-/// Returns the unit of errors: that of lengths, and of a function degrees.
+/// Returns the unit of errors: that of lengths, and of a function of angles degrees.
 pub(super) fn error_unit(record: &Record) -> String {
-    if record.problem.resolved.task.is_function() { "°".to_owned() } else { unit_suffix(record) }
+    let task = &record.problem.resolved.task;
+    if task.is_function() && !task.is_of_places() { "°".to_owned() } else { unit_suffix(record) }
 }
 
 /// Returns the objective if it is not the plain sum of squares: the heading of its column and a sentence on it. `unit`
@@ -320,24 +323,6 @@ pub(super) fn sense(sense: Sense) -> &'static str {
         Sense::Same => "same",
         Sense::Opposite => "opposite",
     }
-}
-
-/// Returns the starting angles of a function's links, with the ranges that are free: `the crank from 31.8° and the follower
-/// from 61.5° through 88.2°, in the same sense`.
-pub(super) fn offsets(candidate: &Candidate) -> Option<String> {
-    let [input, output] =
-        [candidate.input_offset_deg?, candidate.output_offset_deg?].map(|deg| significant(deg, 6));
-    let sense = match candidate.sense? {
-        Sense::Opposite => "opposite senses",
-        Sense::Same | Sense::Any => "the same sense",
-    };
-    let through = |range: Option<f64>| {
-        range.map_or_else(String::new, |range| format!(" through {}°", significant(range, 6)))
-    };
-    let [of_crank, of_follower] = [candidate.input_range_deg, candidate.output_range_deg].map(through);
-    Some(format!(
-        "from the line A-B, the crank from {input}°{of_crank} and the follower from {output}°{of_follower}, in {sense}"
-    ))
 }
 
 /// Returns the errors of the body's angle in a motion: `angle error 0.31° rms, largest 0.8° at pose 3`.
@@ -487,6 +472,18 @@ pub(super) fn without_advice(record: &Record) -> Option<&'static str> {
 pub(super) fn timing(record: &Record) -> &'static str {
     if let Some(output) = &record.problem.resolved.task.output {
         let input = record.problem.resolved.task.timing.as_ref().map(|timing| timing.offset);
+        if output.output == Output::Place {
+            return match (input == Some(AngleOffset::Ground), output.offset == AngleOffset::Ground) {
+                (false, false) => "both offsets free",
+                (true, false) => "inputs from the ground's line, outputs' offset free",
+                (false, true) => {
+                    "inputs' offset free, outputs from A's foot on the line, or from C along the rod"
+                }
+                (true, true) => {
+                    "inputs from the ground's line, outputs from A's foot on it, or from C along the rod"
+                }
+            };
+        }
         return match (input == Some(AngleOffset::Ground), output.offset == AngleOffset::Ground) {
             (false, false) => "both offsets free",
             (true, false) => "inputs from the line A-B, outputs' offset free",

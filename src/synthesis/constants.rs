@@ -65,21 +65,26 @@ pub mod sliders {
     pub const LONG: usize = 2;
     pub const SHORT_FIT: Effort = Effort::of(15, 2);
     pub const LONG_FIT: Effort = Effort::of(200, 12);
+    /// The part of their size by which the unknowns of starts that are fitted to convergence differ.
+    pub const APART: f64 = 0.1;
     /// Of a motion: sets of four poses whose slider is taken in a round, and lines that are drawn.
     pub const FOURS: usize = 6;
     pub const ACROSS: usize = 6;
+    /// Of a function: offsets that are drawn in a round, and the crank's offsets of the first one.
+    pub const OFFSETS: usize = 40;
+    pub const TURNS: usize = 12;
     /// Batches of families of exact answers.
     pub const FAMILY_BATCHES: u64 = 6;
     /// Candidates fitted on to the last digit at the end, at least, and the effort of each.
     pub const LEAST_POLISHED: usize = 8;
-    pub const POLISH: Effort = Effort::of(1500, 40);
+    pub const POLISH: Effort = Effort::of(5000, 40);
     /// When the best answer is believed.
     pub const STOPPING: Stopping = Stopping {
-        hits: 5,
-        near_hits: 12,
+        hits: 8,
+        near_hits: 16,
         quiet_rounds: 60,
         quiet_times: 4,
-        least_batches: 2,
+        least_batches: 6,
         quiet_batches: 6,
     };
     /// Candidates kept.
@@ -98,7 +103,7 @@ pub mod plan {
     pub const POLISH_SHARE: u64 = 5;
     /// A search for several kinds first looks for an exact four-bar with so many evaluations, and for an exact linkage with a
     /// slider with one part in `GLIMPSE_SHARE` of its evaluations. `cargo bench --bench sliders -- mixed` chooses them.
-    pub const GLIMPSE: u64 = 1500;
+    pub const GLIMPSE: u64 = 8000;
     pub const GLIMPSE_SHARE: u64 = 4;
     /// Number of the other candidates found around a far target's own centre that are brought back to the target.
     pub const FAR_OTHERS: usize = 32;

@@ -67,7 +67,7 @@ impl<'a> FunctionStarts<'a> {
         let space = problem.space(problem.sides()[0]);
         let middle = space.bounds().map(|(low, high)| if low.is_finite() { 0.5 * (low + high) } else { 0.0 });
         let middle = space.shape(&middle)?;
-        let Link::Follower { offset, .. } = body.link else { return None };
+        let Link::Output { offset, .. } = body.link else { return None };
         let output_is_free = offset == AngleOffset::Free;
         Some(FunctionStarts {
             problem,

@@ -42,5 +42,6 @@ pub use kind::TaskKind;
 pub use problem::{Problem, Setting};
 pub(crate) use targets::corners;
 pub use targets::{
-    AngleOffset, Body, Link, Return, SMALLEST_SIZE, Sense, Task, TaskError, TaskOptions, Timing, best_frame,
+    AngleOffset, Body, Link, Output, Return, SMALLEST_SIZE, Sense, Task, TaskError, TaskOptions, Timing,
+    best_frame,
 };

@@ -84,7 +84,7 @@ impl Problem {
     /// As [`Task::new`]; and if the largest deviation is minimised and a tolerance is zero.
     pub fn new(spec: ProblemSpec) -> Result<Self, TaskError> {
         let mut task = spec.task.to_task()?;
-        if task.is_function() {
+        if task.body().is_some_and(|body| task.is_function() && !body.is_of_places()) {
             task = task.of_size(spec.design.function_ground());
         }
         if spec.solve.objective == Objective::MaxDeviation {
@@ -95,7 +95,7 @@ impl Problem {
         types.sort();
         types.dedup();
         let mut problem = Problem { spec, task, types, grid: 0.0 };
-        if problem.has_to_turn_on() {
+        if problem.has_to_turn() {
             problem.types = turning(&problem.types);
         }
         Ok(problem)
@@ -138,16 +138,21 @@ impl Problem {
         self.task.returns() && self.order_required() && self.task.comes_back() == Return::TurningOn
     }
 
+    /// Returns whether only a crank that turns fully can be acceptable: it is asked for, or the motion has to turn on.
+    pub fn has_to_turn(&self) -> bool {
+        self.has_to_turn_on() || self.spec.require.asks_full_turn()
+    }
+
     /// Returns the types that are searched for, sorted; empty: any. They are the required ones; if the crank has to
     /// turn fully, those of them whose crank does.
     pub fn types(&self) -> &[LinkageType] {
         &self.types
     }
 
-    /// Returns whether searches hold their fits to one of the types from the start: true if types are required. If only
+    /// Returns whether searches hold their fits to one of the types from the start: true if types or a full turn are required. If only
     /// the crank has to turn fully, fits are free to pass a change point, and those that end beyond it are led back.
     pub fn aims_at_types(&self) -> bool {
-        !self.spec.require.types.is_empty()
+        !self.spec.require.types.is_empty() || self.spec.require.asks_full_turn()
     }
 
     /// Returns whether the crank angle's offset is an unknown of the design vector.

@@ -209,6 +209,9 @@ impl ProblemSpec {
         for length in [&mut require.extent_max, &mut require.longest_max].into_iter().flatten() {
             *length *= by.scale;
         }
+        if let Some(stroke) = &mut require.stroke {
+            *stroke = Limits(by.scale * stroke.0, by.scale * stroke.1);
+        }
         if by.mirrors {
             require.direction = opposite(require.direction);
         }
@@ -289,6 +292,9 @@ impl ProblemSpec {
         for x in [&mut require.extent_max, &mut require.longest_max].into_iter().flatten() {
             *x = of_itself(*x);
         }
+        if let Some(stroke) = &mut require.stroke {
+            both(&of_itself, stroke);
+        }
         spec
     }
 
@@ -316,6 +322,7 @@ impl ProblemSpec {
         limits.extend(boxes);
         limits.extend(self.require.pivot_on.iter().flat_map(PivotOn::points).flatten());
         limits.extend([self.require.extent_max, self.require.longest_max].into_iter().flatten());
+        limits.extend(self.require.stroke.iter().flat_map(|Limits(low, high)| [*low, *high]));
         limits.push(match self.require.direction {
             DirectionPolicy::Any => 0.0,
             DirectionPolicy::Ccw => 1.0,

@@ -165,6 +165,25 @@ impl DesignSpec {
         self.e = Some(fixed(0.0));
     }
 
+    /// Fills in the defaults of a function of a slider's places: A in the origin, the line of a slider-crank along the x axis,
+    /// the pivot of an inverted one's block to the right of A, and crank, coupler and ground in [0.1, 10] of the range of the
+    /// places.
+    fn resolve_places(&mut self, range: f64) {
+        let fixed = |x: f64| Limits(x, x);
+        let [low, high] = FUNCTION_RATIOS.map(|ratio| ratio * range);
+        let [x, y] = *self.crank_pivot.get_or_insert([fixed(0.0), fixed(0.0)]);
+        for key in [&mut self.a, &mut self.b] {
+            key.get_or_insert(Limits(low, high));
+        }
+        if self.searches(LoopKind::SliderCrank) {
+            self.line_deg.get_or_insert(fixed(0.0));
+        }
+        if self.searches(LoopKind::InvertedSliderCrank) {
+            let Limits(least, most) = self.ground.unwrap_or(Limits(low, high));
+            self.follower_pivot.get_or_insert([Limits(x.0 + least, x.1 + most), y]);
+        }
+    }
+
     /// Returns whether a length is bounded: a link, a distance of the coupler point or one of its coordinates.
     pub fn bounds_a_length(&self) -> bool {
         let DesignSpec { a, b, c, d, e, ground, coupler_x, coupler_y, .. } = self;
@@ -177,8 +196,12 @@ impl DesignSpec {
     /// A quantity that other given keys determine gets no default of its own: B if `ground` or `ground_angle_deg` is
     /// given, the ground if both pivots are, coupler_x and coupler_y if `d` or `e` is given.
     pub fn resolve(&mut self, task: &Task) {
-        if task.is_function() {
-            return self.resolve_function();
+        if let Some(output) = task.body().filter(|_| task.is_function()) {
+            match output.is_of_places() {
+                true => self.resolve_places(task.size()),
+                false => self.resolve_function(),
+            }
+            return;
         }
         let (size, centre) = (task.size(), task.centre());
         // No default allows coordinates that a linkage cannot have.

@@ -11,7 +11,7 @@
 //! B); with *free timing* each is chosen to be nearest. This module uses `mechanism` and nothing else of the crate.
 
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{Complex, MAX_MAGNITUDE};
+use crate::mechanism::{Complex, LoopJoints, MAX_MAGNITUDE, OneLoop};
 use crate::task::ranges::Ranges;
 
 /// The reference direction of prescribed crank angles.
@@ -90,23 +90,37 @@ impl Sense {
     }
 }
 
+/// The quantity that is the output of a function.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Output {
+    /// The angle of the follower, or of the block of an inverted slider-crank.
+    #[default]
+    Angle,
+    /// The place of a slider, a length. It is written as the angle of as many degrees, so that one arithmetic serves both;
+    /// it has no turns.
+    Place,
+}
+
 /// The link whose angles are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Link {
     /// The coupler, which carries a body.
     Coupler,
-    /// The follower, whose angle is the output of a function.
-    Follower {
-        /// The reference of output angles: free, or the ground line A -> B.
+    /// The output link of a function: the follower, or a slider.
+    Output {
+        /// The quantity that is wanted of it.
+        output: Output,
+        /// The reference of outputs: free, or the ground line A -> B; of places the foot of the perpendicular from A on the
+        /// slider's line, or C.
         offset: AngleOffset,
-        /// The sense in which they count.
+        /// The sense in which they count: of a slider along its line or against it.
         sense: Sense,
         /// The ranges of inputs and outputs, where they are free.
         ranges: Ranges,
     },
 }
 
-/// The angles of a link at the targets: those of a body on the coupler in a motion, those of the follower in a function.
+/// The angles of a link at the targets: those of a body on the coupler in a motion, those of the output link in a function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// The angle at each target, in radians; `None`: only the place counts there.
@@ -130,10 +144,15 @@ fn mean_direction(apart: &[Option<f64>], weights: &[f64]) -> f64 {
 /// the turn that is nearest to their mean direction.
 pub fn best_frame(apart: &[Option<f64>], weights: &[f64]) -> f64 {
     let middle = mean_direction(apart, weights);
-    let given = || apart.iter().zip(weights).filter_map(|(apart, weight)| Some(((*apart)?, *weight)));
+    wrapped(middle + mean(apart, weights, |apart| wrapped(apart - middle)))
+}
+
+/// Returns the weighted mean of what `of` makes of the numbers.
+fn mean(numbers: &[Option<f64>], weights: &[f64], of: impl Fn(f64) -> f64) -> f64 {
+    let given = || numbers.iter().zip(weights).filter_map(|(number, weight)| Some(((*number)?, *weight)));
     let total: f64 = given().map(|(_, weight)| weight).sum();
-    let off: f64 = given().map(|(apart, weight)| weight * wrapped(apart - middle)).sum();
-    wrapped(middle + off / total)
+    let off: f64 = given().map(|(number, weight)| weight * of(number)).sum();
+    off / total
 }
 
 impl Body {
@@ -141,7 +160,7 @@ impl Body {
     pub fn line(&self, [pivot, crank_pin, follower_pin]: [Complex; 3]) -> Complex {
         match self.link {
             Link::Coupler => follower_pin - crank_pin,
-            Link::Follower { .. } => follower_pin - pivot,
+            Link::Output { .. } => follower_pin - pivot,
         }
     }
 
@@ -149,7 +168,7 @@ impl Body {
     pub fn signs(&self) -> &'static [f64] {
         match self.link {
             Link::Coupler => &[1.0],
-            Link::Follower { sense, .. } => sense.signs(),
+            Link::Output { sense, .. } => sense.signs(),
         }
     }
 
@@ -157,16 +176,43 @@ impl Body {
     pub fn ranges(&self) -> Ranges {
         match self.link {
             Link::Coupler => Ranges::default(),
-            Link::Follower { ranges, .. } => ranges,
+            Link::Output { ranges, .. } => ranges,
         }
     }
 
     /// Returns the frame that the ground's direction (radians) determines: of outputs that count from the ground line.
     pub fn given_frame(&self, ground_angle: f64) -> Option<f64> {
         match self.link {
-            Link::Follower { offset: AngleOffset::Ground, .. } => Some(wrapped(-ground_angle)),
-            Link::Follower { .. } | Link::Coupler => None,
+            Link::Output { output: Output::Place, offset: AngleOffset::Ground, .. } => Some(0.0),
+            Link::Output { offset: AngleOffset::Ground, .. } => Some(wrapped(-ground_angle)),
+            Link::Output { .. } | Link::Coupler => None,
         }
+    }
+
+    /// Returns whether places of a slider are wanted.
+    pub fn is_of_places(&self) -> bool {
+        matches!(self.link, Link::Output { output: Output::Place, .. })
+    }
+
+    /// Returns the measure of the link that is wanted at a position of a linkage, in the radians of `angles`: the direction of
+    /// the coupler or of the output link, or the place of a slider. `None` if the linkage has none.
+    pub fn measured(&self, linkage: &OneLoop, at: &LoopJoints) -> Option<f64> {
+        match self.link {
+            Link::Coupler => Some(at.coupler.arg()),
+            Link::Output { output: Output::Angle, .. } => linkage.output_angle(at),
+            Link::Output { output: Output::Place, .. } => linkage.slider_place(at).map(f64::to_radians),
+        }
+    }
+
+    /// Returns a difference of two measures: of angles within half a turn, of places as it is.
+    pub fn apart(&self, difference: f64) -> f64 {
+        if self.is_of_places() { difference } else { wrapped(difference) }
+    }
+
+    /// Returns the frame for which the weighted sum of squared errors is least, at the measures `apart`, those wanted less
+    /// those of the link: of places their mean, of angles as [`best_frame`].
+    pub fn best_frame(&self, apart: &[Option<f64>], weights: &[f64]) -> f64 {
+        if self.is_of_places() { mean(apart, weights, |apart| apart) } else { best_frame(apart, weights) }
     }
 
     /// Returns the difference between the least and the greatest angle, in radians.
@@ -181,11 +227,11 @@ impl Body {
     ///
     /// With a_j apart and tolerances t_j the least largest error is the greatest (a_i - a_j) / (t_i + t_j).
     pub fn frame_within(&self, apart: &[Option<f64>], weights: &[f64], largest: bool) -> f64 {
-        let middle = mean_direction(apart, weights);
+        let middle = if self.is_of_places() { 0.0 } else { mean_direction(apart, weights) };
         // Each with its place, on the turn that is nearest to that direction.
         let given = apart.iter().enumerate();
         let given: Vec<(usize, f64)> =
-            given.filter_map(|(j, apart)| Some((j, wrapped((*apart)? - middle)))).collect();
+            given.filter_map(|(j, apart)| Some((j, self.apart((*apart)? - middle)))).collect();
         let tolerance =
             |j: usize| self.tolerances.as_ref().map_or(1.0, |tolerances| tolerances[j].max(SMALLEST_SIZE));
         let (mut least, mut nearest) = (0.0, given.first().map_or(0.0, |(_, apart)| *apart));
@@ -198,12 +244,12 @@ impl Body {
             }
         }
         if largest || least > 1.0 || self.tolerances.is_none() {
-            return wrapped(middle + nearest);
+            return self.apart(middle + nearest);
         }
         let low = given.iter().map(|(j, apart)| apart - tolerance(*j)).fold(f64::NEG_INFINITY, f64::max);
         let high = given.iter().map(|(j, apart)| apart + tolerance(*j)).fold(f64::INFINITY, f64::min);
-        let mean = wrapped(best_frame(apart, weights) - middle);
-        wrapped(middle + mean.max(low).min(high))
+        let best = self.apart(self.best_frame(apart, weights) - middle);
+        self.apart(middle + best.max(low).min(high))
     }
 }
 
@@ -255,7 +301,7 @@ pub enum TaskError {
     #[error("crank angles are prescribed at fewer than two targets")]
     TooFewTimed,
     /// All outputs of a function are equal.
-    #[error("all outputs are equal: the follower would stand still")]
+    #[error("all outputs are equal: the output link would stand still")]
     ConstantOutput,
     /// All inputs of a function are equal.
     #[error("all inputs are equal: the crank would stand still")]
@@ -355,7 +401,7 @@ impl Task {
     /// # Errors
     /// [`TaskError`], by its variants.
     pub fn new(points: Vec<[f64; 2]>, timing: Timing, options: TaskOptions) -> Result<Self, TaskError> {
-        let follower = options.body.as_ref().filter(|body| matches!(body.link, Link::Follower { .. }));
+        let follower = options.body.as_ref().filter(|body| matches!(body.link, Link::Output { .. }));
         let n = follower.map_or(points.len(), |body| body.angles.len());
         if n < 2 {
             return Err(TaskError::TooFewPoints(n));
@@ -432,7 +478,8 @@ impl Task {
         })
     }
 
-    /// Creates the task of a function, whose lists have been checked: no places, and a linkage of the size 1.
+    /// Creates the task of a function, whose lists have been checked: no points, and a linkage of the size 1, or of the range
+    /// of a slider's places.
     fn function(body: Body, timing: Timing, options: TaskOptions) -> Result<Self, TaskError> {
         let Timing::Prescribed { crank_angles, .. } = &timing else { return Err(TaskError::NoInput) };
         if crank_angles.iter().all(|angle| *angle == crank_angles[0]) {
@@ -453,7 +500,7 @@ impl Task {
             comes_back: Return::default(),
             timing,
             untimed: Vec::new(),
-            size: 1.0,
+            size: if body.is_of_places() { body.angle_weight * range } else { 1.0 },
             error_size: body.angle_weight * range,
             body: Some(body),
             centre: Complex::new(0.0, 0.0),
@@ -545,7 +592,7 @@ impl Task {
 
     /// Returns whether the task is a function: angles of the follower, and no places.
     pub fn is_function(&self) -> bool {
-        self.body.as_ref().is_some_and(|body| matches!(body.link, Link::Follower { .. }))
+        self.body.as_ref().is_some_and(|body| matches!(body.link, Link::Output { .. }))
     }
 
     /// Returns the bounds of the scales of a function's inputs and outputs: 1 unless its ranges are free.

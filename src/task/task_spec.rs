@@ -6,7 +6,7 @@
 
 use crate::task::ranges::{Ranges, RangesSpec};
 use crate::task::resampling::{resample, smooth};
-use crate::task::{AngleOffset, Body, Link, Sense, Task, TaskError, TaskKind, TaskOptions, Timing};
+use crate::task::{AngleOffset, Body, Link, Output, Sense, Task, TaskError, TaskKind, TaskOptions, Timing};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -33,9 +33,11 @@ pub struct TaskSpec {
     pub output: Option<OutputSpec>,
 }
 
-/// The reference and the sense of the output angles of a function, and the formula that gave them.
+/// The outputs of a function: what they are, their reference and sense, and the formula that gave them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputSpec {
+    /// Angles, or places of a slider: these stand for degrees in the body.
+    pub output: Output,
     /// Their reference: free, or the ground line.
     pub offset: AngleOffset,
     /// The sense in which they count.
@@ -161,7 +163,8 @@ impl TaskSpec {
             body: self.body.as_ref().map(|body| Body {
                 angles: body.angle_deg.iter().map(|angle| angle.as_ref().map(radians)).collect(),
                 angle_weight: body.angle_weight,
-                link: self.output.as_ref().map_or(Link::Coupler, |output| Link::Follower {
+                link: self.output.as_ref().map_or(Link::Coupler, |output| Link::Output {
+                    output: output.output,
                     offset: output.offset,
                     sense: output.sense,
                     ranges: Ranges::of(&output.ranges, self.written_ranges_deg()),
@@ -191,19 +194,25 @@ impl TaskSpec {
         self.kind() == TaskKind::Function
     }
 
+    /// Returns whether it is a function whose outputs are places of a slider.
+    pub fn is_of_places(&self) -> bool {
+        self.output.as_ref().is_some_and(|output| output.output == Output::Place)
+    }
+
     /// Returns the word for one of its targets: `point`, `pose` or `pair`.
     pub fn noun(&self) -> &'static str {
         self.kind().noun()
     }
 
-    /// Returns the input and the output of each pair of a function, degrees; none of another task.
+    /// Returns the input and the output of each pair of a function, degrees, or a length of a slider's place; none of another
+    /// task.
     pub fn pairs(&self) -> Vec<[f64; 2]> {
         let outputs = self.body.iter().filter(|_| self.is_function()).flat_map(|body| &body.angle_deg);
         let inputs = self.timing.iter().flat_map(|timing| &timing.crank_deg);
         inputs.zip(outputs).filter_map(|(input, output)| Some([*input, (*output)?])).collect()
     }
 
-    /// Returns the ranges of the inputs and the outputs of a function as they are written, degrees.
+    /// Returns the ranges of the inputs and the outputs of a function as they are written.
     pub fn written_ranges_deg(&self) -> [f64; 2] {
         let pairs = self.pairs();
         let range = |of: fn(&[f64; 2]) -> f64| {
@@ -285,19 +294,24 @@ struct MotionTable {
     timing: Option<TimingSpec>,
 }
 
-/// A function: output angles of the follower at input angles of the crank, with their weights and tolerances.
+/// A function: output angles of the follower, or places of a slider, at input angles of the crank, with their weights and
+/// tolerances.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "FunctionSpec")]
 struct FunctionTable {
     /// The angle of the crank at each pair, degrees, counter-clockwise positive.
     input_deg: Vec<f64>,
-    /// The angle of the follower at each pair, degrees.
+    /// The angle of the follower at each pair, degrees; absent of places.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     output_deg: Vec<f64>,
+    /// The place of the slider at each pair; absent of angles.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    output: Vec<f64>,
     /// The reference of input angles: free, or the ground line.
     input_offset: AngleOffset,
-    /// The reference of output angles, likewise.
+    /// The reference of outputs, likewise.
     output_offset: AngleOffset,
-    /// The sense in which output angles count.
+    /// The sense in which outputs count.
     sense: Sense,
     /// The ranges that are free.
     #[serde(flatten)]
@@ -308,6 +322,9 @@ struct FunctionTable {
     /// The largest error of the output accepted, degrees, one a pair.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     tolerance_deg: Option<Vec<f64>>,
+    /// The largest error of a slider's place accepted, one a pair.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    tolerance: Option<Vec<f64>>,
     /// The formula of which the pairs were taken; absent: they were given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     of: Option<FormulaSpec>,
@@ -318,20 +335,26 @@ impl FunctionTable {
         let FunctionTable {
             input_deg,
             output_deg,
+            output,
             input_offset,
             output_offset,
             sense,
             ranges,
             weight,
             tolerance_deg,
+            tolerance,
             of,
         } = self;
-        let angle_deg = output_deg.into_iter().map(Some).collect();
+        let (kind, outputs, tolerance_deg) = match output.is_empty() {
+            true => (Output::Angle, output_deg, tolerance_deg),
+            false => (Output::Place, output, tolerance),
+        };
+        let angle_deg = outputs.into_iter().map(Some).collect();
         TaskSpec {
             weight,
             timing: Some(TimingSpec { crank_deg: input_deg, offset: input_offset, free: Vec::new() }),
             body: Some(BodySpec { angle_deg, angle_weight: DEGREES, tolerance_deg }),
-            output: Some(OutputSpec { offset: output_offset, sense, ranges, of }),
+            output: Some(OutputSpec { output: kind, offset: output_offset, sense, ranges, of }),
             ..TaskSpec::default()
         }
     }
@@ -341,15 +364,22 @@ impl FunctionTable {
             spec.body.map_or((Vec::new(), None), |body| (body.angle_deg, body.tolerance_deg));
         let (input_deg, input_offset) =
             spec.timing.map_or((Vec::new(), AngleOffset::Free), |timing| (timing.crank_deg, timing.offset));
+        let outputs = angles.into_iter().map(|angle| angle.unwrap_or(f64::NAN)).collect();
+        let (output_deg, places, tolerance_deg, tolerance) = match output.output {
+            Output::Angle => (outputs, Vec::new(), tolerance_deg, None),
+            Output::Place => (Vec::new(), outputs, None, tolerance_deg),
+        };
         FunctionTable {
             input_deg,
-            output_deg: angles.into_iter().map(|angle| angle.unwrap_or(f64::NAN)).collect(),
+            output_deg,
+            output: places,
             input_offset,
             output_offset: output.offset,
             sense: output.sense,
             ranges: output.ranges,
             weight: spec.weight,
             tolerance_deg,
+            tolerance,
             of: output.of,
         }
     }

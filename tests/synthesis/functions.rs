@@ -12,7 +12,7 @@ use linkwright::internals::numbers::optimise::levenberg_marquardt::derivative_er
 use linkwright::internals::synthesis::nearest::nearest_positions;
 use linkwright::internals::task::forms::design_space::{Design, Shape};
 use linkwright::internals::task::forms::timed::FunctionFit;
-use linkwright::internals::task::{Sense, Setting};
+use linkwright::internals::task::{Output, Sense, Setting};
 use linkwright::spec::{Objective, ProblemSpec};
 use linkwright::{AssemblyMode, CouplerSide, FourBar, Problem, Record, load_problem};
 use std::path::Path;
@@ -389,7 +389,8 @@ fn a_wrong_dimension_changes_the_output_as_its_derivative_says() {
             .iter()
             .map(|angle| At { crank_angle: *angle, assembly: linkage.assembly(), is_free: false })
             .collect();
-        let felt = output_sensitivity(&linkage, &at, Crank::OffsetIsSet, true).expect("it has derivatives");
+        let felt = output_sensitivity(linkage, Output::Angle, &at, (Crank::OffsetIsSet, true))
+            .expect("it has derivatives");
         let outputs = |linkage: &FourBar, turn: f64| -> Vec<f64> {
             let ground = linkage.ground_angle();
             let turned = |angle: &f64| {

@@ -34,6 +34,7 @@ mod resuming;
 #[path = "../common/ladder.rs"]
 mod rungs;
 mod search;
+mod slider_functions;
 mod sliders;
 mod snapping;
 mod suite;

@@ -420,6 +420,9 @@ pub enum Carried {
     /// A function, with the angles of crank and follower from the line from A to B at an input and an output of 0, degrees,
     /// and the sense in which outputs count.
     Function([f64; 2], Sense),
+    /// A function of a slider's places, with the crank's angle from the ground line, degrees, and the slider's place in the
+    /// sense of the outputs at an input and an output of 0, and that sense.
+    Places([f64; 2], Sense),
 }
 
 impl Carried {
@@ -427,7 +430,9 @@ impl Carried {
     pub fn of(candidate: &Candidate) -> Option<Carried> {
         let Candidate { frame_deg, input_offset_deg, output_offset_deg, sense, .. } = candidate;
         let function = || Some(Carried::Function([(*input_offset_deg)?, (*output_offset_deg)?], (*sense)?));
-        frame_deg.map(Carried::Body).or_else(function)
+        let places =
+            || Some(Carried::Places([(*input_offset_deg)?, candidate.output_offset?], candidate.sense?));
+        frame_deg.map(Carried::Body).or_else(function).or_else(places)
     }
 }
 
@@ -439,6 +444,17 @@ pub fn to_toml_with(name: &str, unit: Option<Unit>, linkage: &OneLoop, carried: 
         Some(Carried::Body(frame_deg)) => format!(
             "# The body: P is its origin, and its x axis lies {frame_deg:?} degrees counter-clockwise from the line from C to D.\n"
         ),
+        Some(Carried::Places([input, output], sense)) => {
+            let (line, zero) = match linkage {
+                OneLoop::InvertedSliderCrank(_) => ("line from A to B", "pin C, along the rod"),
+                _ => ("slider's line", "foot of the perpendicular from A, along the line"),
+            };
+            let way = if sense == Sense::Opposite { " backwards" } else { "" };
+            format!(
+                "# The function: from the {line}, the crank stands at {input:?} degrees plus the input, and the\n\
+                 # slider at {output:?} plus the output from the {zero}{way}.\n"
+            )
+        }
         Some(Carried::Function([input, output], sense)) => {
             let way = if sense == Sense::Opposite { "clockwise" } else { "counter-clockwise" };
             format!(

@@ -5,7 +5,7 @@ use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::linkage_file::{no_triangle, triangle_remedy};
 use crate::files::toml_text::TomlText;
 use crate::mechanism::{FLAT_TOLERANCE, LoopKind};
-use crate::task::TaskKind;
+use crate::task::Output;
 use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, Limits, Method, Objective, RequireSpec, SolveSpec, TaskSpec};
 use crate::task::values::OneOrMore;
@@ -13,11 +13,11 @@ use crate::task::values::OneOrMore;
 /// Two quantities that should agree may differ by this part of their scale: a person types few digits.
 const TYPED_DIGITS: f64 = 1e-6;
 
-/// Returns the `[design]` table as data, unchecked.
-pub(super) fn spec_of(raw: &RawDesign) -> DesignSpec {
+/// Returns the `[design]` table as data, unchecked; `of_places`: of a function whose outputs are places of a slider.
+pub(super) fn spec_of(raw: &RawDesign, of_places: bool) -> DesignSpec {
     let limits = |b: Option<crate::files::toml_values::Bounds>| b.map(|b| b.0);
     DesignSpec {
-        mechanism: kinds_of(raw),
+        mechanism: kinds_of(raw, of_places),
         crank_pivot: raw.crank_pivot.map(|p| p.0),
         follower_pivot: raw.follower_pivot.map(|p| p.0),
         a: limits(raw.a),
@@ -34,24 +34,26 @@ pub(super) fn spec_of(raw: &RawDesign) -> DesignSpec {
     }
 }
 
-/// Returns the kinds of linkages, sorted; none where they are four-bars alone.
-fn kinds_of(raw: &RawDesign) -> Vec<LoopKind> {
-    let mut kinds = raw.mechanism.as_ref().map_or_else(Vec::new, |kinds| kinds.0.clone());
+/// Returns the kinds of linkages, sorted; none where they are four-bars alone. Where the file is silent a slider's places are
+/// those of a slider-crank.
+fn kinds_of(raw: &RawDesign, of_places: bool) -> Vec<LoopKind> {
+    let silent = || if of_places { vec![LoopKind::SliderCrank] } else { Vec::new() };
+    let mut kinds = raw.mechanism.as_ref().map_or_else(silent, |kinds| kinds.0.clone());
     kinds.sort_unstable();
     kinds.dedup();
     if kinds == [LoopKind::FourBar] { Vec::new() } else { kinds }
 }
 
-/// Refuses an empty list of kinds, and kinds with a slider where they are not searched for: for functions, with exact
-/// targets, with free crank angles among prescribed ones, by other methods than least squares, and for the largest
-/// deviation.
+/// Refuses an empty list of kinds, and kinds with a slider where they are not searched for: with free ranges of a
+/// function, with exact targets, with free crank angles among prescribed ones, by other methods than least squares, and for
+/// the largest deviation; of a function also kinds that have no such output.
 pub(super) fn of_kinds(
     toml: &TomlText<'_>,
     raw: &RawDesign,
-    (task, solve): (&TaskSpec, &SolveSpec),
+    (task, solve, require): (&TaskSpec, &SolveSpec, &RequireSpec),
 ) -> Checked<()> {
     let lines = [("line_deg", raw.line_deg.is_some()), ("line_point", raw.line_point.is_some())];
-    let has_line = raw.mechanism.as_ref().is_some_and(|kinds| kinds.0.contains(&LoopKind::SliderCrank));
+    let has_line = kinds_of(raw, task.is_of_places()).contains(&LoopKind::SliderCrank);
     if let Some((key, _)) = lines.into_iter().find(|(_, given)| *given && !has_line) {
         let message = format!("{key} is about the line of a slider-crank, and none is searched for");
         return toml.refuse(
@@ -59,6 +61,13 @@ pub(super) fn of_kinds(
             message,
             "remove it, or write mechanism = \"slider-crank\"",
         );
+    }
+    let kinds = kinds_of(raw, task.is_of_places());
+    let asked = [("stroke", require.stroke.is_some()), ("time_ratio", require.time_ratio.is_some())];
+    if let Some((key, _)) = asked.into_iter().find(|(_, given)| *given && kinds != [LoopKind::SliderCrank]) {
+        let message = format!("{key} is about a slider-crank, and other kinds are searched for");
+        let help = "remove it, or write mechanism = \"slider-crank\" in [design]";
+        return toml.refuse(&format!("require.{key}"), message, help);
     }
     let Some(OneOrMore(kinds)) = &raw.mechanism else { return Ok(()) };
     if kinds.is_empty() {
@@ -68,11 +77,27 @@ pub(super) fn of_kinds(
             "write mechanism = \"four-bar\"",
         );
     }
+    if let Some(output) = &task.output {
+        let has_output = |kind: &LoopKind| match output.output {
+            Output::Angle => *kind != LoopKind::SliderCrank,
+            Output::Place => *kind != LoopKind::FourBar,
+        };
+        if let Some(kind) = kinds.iter().find(|kind| !has_output(kind)) {
+            let (what, help) = match output.output {
+                Output::Angle => {
+                    ("no output link that turns", "write output = [..], the places of its slider")
+                }
+                Output::Place => ("no slider", "write output_deg = [..], the angles of its follower"),
+            };
+            return toml.refuse("design.mechanism", format!("a {kind} has {what}"), help);
+        }
+    }
     let Some(slider) = kinds.iter().find(|kind| **kind != LoopKind::FourBar) else { return Ok(()) };
+    let has_free_range = task.output.as_ref().is_some_and(|output| output.ranges.is_free());
     let is_partly_timed = task.timing.as_ref().is_some_and(|timing| !timing.free.is_empty());
     let of_populations = matches!(solve.method, Method::Genetic | Method::DifferentialEvolution);
-    let why = if task.kind() == TaskKind::Function {
-        format!("\"{slider}\" is searched for paths and motions, and this is a function")
+    let why = if has_free_range {
+        format!("\"{slider}\" is not searched for with a free range of a function")
     } else if task.tolerance.iter().flatten().any(|tolerance| *tolerance == 0.0) {
         format!("\"{slider}\" is not searched for with exact targets")
     } else if is_partly_timed {

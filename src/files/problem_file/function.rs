@@ -8,10 +8,10 @@ use super::target::{Source, Target, Whereabouts};
 use crate::files::diagnostic::{Checked, quoted};
 use crate::files::points_file::MAX_POINTS;
 use crate::files::toml_text::TomlText;
-use crate::files::toml_values::numbers;
-use crate::task::AngleOffset;
-use crate::task::ranges::WRITTEN_RANGE_DEG;
+use crate::files::toml_values::{Number, numbers};
+use crate::task::ranges::{RangesSpec, WRITTEN_RANGE_DEG};
 use crate::task::spec::{BodySpec, DEGREES, FormulaSpec, OutputSpec, TaskSpec, TimingSpec};
+use crate::task::{AngleOffset, Output, Sense};
 use exmex::prelude::*;
 
 /// The number of pairs taken of a formula where the file is silent.
@@ -21,12 +21,13 @@ const LONGEST_FORMULA: usize = 1000;
 /// The largest angle that may be written, degrees: a hundred turns.
 const MOST_DEG: f64 = 36_000.0;
 
-/// Returns the function with its lists, and the task that it is. A tolerance that is set on the command line takes the place
+/// Returns the function with its lists, and the task that it is; without pairs they are the ends of a stroke with its time
+/// ratio. A tolerance that is set on the command line takes the place
 /// of the column of a file of pairs.
 pub(super) fn function_of(
     toml: &TomlText<'_>,
     function: &RawFunction,
-    whereabouts: &Whereabouts<'_>,
+    (whereabouts, ends): (&Whereabouts<'_>, Option<[f64; 2]>),
     is_set: impl Fn(&str) -> bool,
 ) -> Checked<TaskRead> {
     for (key, offset) in [("input_offset", function.input_offset), ("output_offset", function.output_offset)]
@@ -38,9 +39,20 @@ pub(super) fn function_of(
         }
     }
     let ranges = free_ranges(toml, function)?;
-    let mut target = Target::of_function(toml, function, whereabouts)?;
+    if let (Some(_), Some(_)) = (&function.output_deg, &function.output) {
+        let message = "the outputs are given as angles (output_deg) and as places (output)";
+        return toml.refuse("task.function.output", message, "keep one of the two");
+    }
+    let mut target = Target::of_function(toml, function, whereabouts, ends)?;
+    if target.of_places {
+        of_places(toml, function, ranges)?
+    } else {
+        of_angles(toml, function)?
+    }
     for (j, pair) in target.points.iter().enumerate() {
-        if let Some(angle) = pair.iter().find(|angle| angle.abs() > MOST_DEG) {
+        if let Some(angle) =
+            pair.iter().take(if target.of_places { 1 } else { 2 }).find(|angle| angle.abs() > MOST_DEG)
+        {
             let message = format!("pair {}: {angle} degrees is more than a hundred turns", j + 1);
             let help = "write the angles in degrees, as far as crank and follower turn";
             let is_input = pair[0].abs() > MOST_DEG && function.input_deg.is_some();
@@ -52,17 +64,21 @@ pub(super) fn function_of(
             return Err(Box::new(at.with_help(help)));
         }
     }
+    let (key, words, given) = match target.of_places {
+        true => ("tolerance", ["tolerance of the output", "an error"], &function.tolerance),
+        false => ("tolerance_deg", ["tolerance of the output", "an angle's error"], &function.tolerance_deg),
+    };
     let mut columns = [None, None];
     if let Source::Csv(csv) = &mut target.source {
-        columns = [&mut csv.weight, &mut csv.tolerance_deg].map(Option::take);
+        let tolerance = if csv.of_places { &mut csv.tolerance } else { &mut csv.tolerance_deg };
+        columns = [&mut csv.weight, tolerance].map(Option::take);
     }
-    let [weight, tolerance_deg] = columns;
-    let tolerance_deg = tolerance_deg.filter(|_| !is_set("task.function.tolerance_deg"));
+    let [weight, tolerance] = columns;
+    let tolerance = tolerance.filter(|_| !is_set(&format!("task.function.{key}")));
     let lists = Lists { toml, target: &target, file: function.file.as_deref() };
-    let words = ["tolerance of the output", "an angle's error"];
-    let tolerance_deg =
-        lists.tolerances("tolerance_deg", words, function.tolerance_deg.as_ref(), tolerance_deg)?;
+    let tolerance_deg = lists.tolerances(key, words, given.as_ref(), tolerance)?;
     let weight = lists.weights(function.weight.as_deref().map(numbers), weight)?;
+    let output = if target.of_places { Output::Place } else { Output::Angle };
     let (crank_deg, angle_deg) =
         std::mem::take(&mut target.points).into_iter().map(|[input, output]| (input, Some(output))).unzip();
     let of =
@@ -71,10 +87,58 @@ pub(super) fn function_of(
         weight,
         timing: Some(TimingSpec { crank_deg, offset: function.input_offset, free: Vec::new() }),
         body: Some(BodySpec { angle_deg, angle_weight: DEGREES, tolerance_deg }),
-        output: Some(OutputSpec { offset: function.output_offset, sense: function.sense, ranges, of }),
+        output: Some(OutputSpec {
+            output,
+            offset: function.output_offset,
+            sense: function.sense,
+            ranges,
+            of,
+        }),
         ..TaskSpec::default()
     };
     task_read(toml, target, spec)
+}
+
+/// Returns the key and the numbers of the outputs that a problem file gives itself.
+pub(super) fn outputs(function: &RawFunction) -> Option<(&'static str, &Vec<Number>)> {
+    let of_angles = function.output_deg.as_ref().map(|outputs| ("output_deg", outputs));
+    of_angles.or(function.output.as_ref().map(|outputs| ("output", outputs)))
+}
+
+/// Refuses keys that are about angles where the outputs are places of a slider.
+fn of_places(toml: &TomlText<'_>, function: &RawFunction, ranges: RangesSpec) -> Checked<()> {
+    let refuse = |key: &str, message: String, help: &str| {
+        toml.refuse_key(&format!("task.function.{key}"), message, help)
+    };
+    if function.sense != Sense::Any {
+        let message = "sense is about the follower's turning, and the outputs are places of a slider";
+        return refuse("sense", message.into(), "remove it: the signs of the outputs say which way it moves");
+    }
+    if function.tolerance_deg.is_some() {
+        let message = "the outputs are places of a slider, whose errors are lengths";
+        return refuse("tolerance_deg", message.into(), "write tolerance");
+    }
+    let free = [
+        ("input_range_deg", ranges.input_range_deg.is_some()),
+        ("output_range_deg", ranges.output_range_deg.is_some() || function.output_range_deg.is_some()),
+    ];
+    match free.into_iter().find(|(_, there)| *there) {
+        None => Ok(()),
+        Some((key, _)) => {
+            let message = format!("a free {key} does not go with places of a slider as outputs");
+            let help = if key == "input_range_deg" { "write it as a number" } else { "write output_range" };
+            refuse(key, message, help)
+        }
+    }
+}
+
+/// Refuses keys that are about places of a slider where the outputs are angles.
+fn of_angles(toml: &TomlText<'_>, function: &RawFunction) -> Checked<()> {
+    if function.tolerance.is_none() {
+        return Ok(());
+    }
+    let message = "the outputs are angles, whose errors are in degrees";
+    toml.refuse_key("task.function.tolerance", message, "write tolerance_deg")
 }
 
 /// Returns the pairs of a formula y = f(x), evenly in x: the input turns in proportion to x, the output to y.
@@ -104,7 +168,14 @@ pub(super) fn of_formula(toml: &TomlText<'_>, function: &RawFunction) -> Checked
         Some(RangeNumbers::Free(_)) => Ok(WRITTEN_RANGE_DEG),
     };
     let input = range("input_range_deg", function.input_range_deg, "crank")?;
-    let output = range("output_range_deg", function.output_range_deg, "follower")?;
+    let output = match function.output_range {
+        None => range("output_range_deg", function.output_range_deg, "follower")?,
+        Some(Number(0.0)) => {
+            let help = "write how far the slider moves, a length";
+            return refuse("output_range", "output_range = 0: the slider would stand still".into(), help);
+        }
+        Some(Number(length)) => length,
+    };
     let samples = function.samples.as_ref().map_or(SAMPLES, |count| count.0);
     if !(2..=MAX_POINTS as u64).contains(&samples) {
         let message = format!("samples = {samples} is not between 2 and {MAX_POINTS}");

@@ -27,7 +27,7 @@ use crate::files::linkage_file::{check_format, checked_name};
 use crate::files::name;
 use crate::files::points_file;
 use crate::files::toml_text::TomlText;
-use crate::files::toml_values::{Count, OnlyTable};
+use crate::files::toml_values::{Bounds, Count, OnlyTable};
 use crate::mechanism::Unit;
 use crate::numbers::optimise::population::PopulationError;
 use crate::record::ProblemRecord;
@@ -36,8 +36,8 @@ use crate::task::forms::precision::precise;
 use crate::task::forms::reduced;
 use crate::task::requirement::{RawRequire, RequirementKind};
 use crate::task::spec::{
-    DesignSpec, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, MOST_PICKS_WITHIN, Method, Objective,
-    ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec,
+    DesignSpec, Limits, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, MOST_PICKS_WITHIN, Method,
+    Objective, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
 use crate::task::{Problem, TaskKind};
 use raw::{RawSolve, RawTask};
@@ -169,8 +169,8 @@ fn parse_at(
         given => checked_name(&toml, given, "problem")?,
     };
     let path::TaskRead { spec: path, task, unit, mut warnings } =
-        task_of(&toml, raw.task.take(), whereabouts, raw.unit, overrides)?;
-    let mut design = design::spec_of(&raw.design.0);
+        task_of(&toml, raw.task.take(), (whereabouts, ends_of(&raw.require.0)), raw.unit, overrides)?;
+    let mut design = design::spec_of(&raw.design.0, path.is_of_places());
     design::check(&toml, &design)?;
     if path.is_function() {
         design::of_function(&toml, &design)?;
@@ -187,7 +187,7 @@ fn parse_at(
     solve.certify = certify;
     warnings.extend(in_vain);
     method_of(&toml, &path, solve.method)?;
-    design::of_kinds(&toml, &raw.design.0, (&path, &solve))?;
+    design::of_kinds(&toml, &raw.design.0, (&path, &solve, &require))?;
     pins_of(&toml, &path, &require)?;
     lines_of(&toml, (&path, &design), &require, solve.method)?;
     if solve.objective == Objective::MaxDeviation {
@@ -211,7 +211,7 @@ fn parse_at(
 fn task_of(
     toml: &TomlText<'_>,
     task: Option<OnlyTable<RawTask>>,
-    whereabouts: &Whereabouts<'_>,
+    (whereabouts, ends): (&Whereabouts<'_>, Option<[f64; 2]>),
     unit: Option<Unit>,
     overrides: &[(String, String)],
 ) -> Checked<path::TaskRead> {
@@ -228,12 +228,21 @@ fn task_of(
     let is_set = |key: &str| is_set(overrides, key);
     match (motion, function) {
         (Some(OnlyTable(motion)), _) => motion::motion_of(toml, &motion, whereabouts, is_set),
-        (None, Some(OnlyTable(function))) => function::function_of(toml, &function, whereabouts, is_set),
+        (None, Some(OnlyTable(function))) => {
+            function::function_of(toml, &function, (whereabouts, ends), is_set)
+        }
         (None, None) => {
             let tolerance_is_set = is_set("task.path.tolerance");
             path::path_of(toml, path.map(|table| table.0), whereabouts, unit, tolerance_is_set)
         }
     }
+}
+
+/// Returns the stroke and the time ratio that are asked for, if both are numbers that make sense.
+fn ends_of(require: &RawRequire) -> Option<[f64; 2]> {
+    let fixed = |bounds: Option<Bounds>| bounds.map(|bounds| bounds.0).filter(Limits::is_fixed).map(|l| l.0);
+    let [stroke, ratio] = [fixed(require.stroke)?, fixed(require.time_ratio)?];
+    (stroke > 0.0 && ratio >= 1.0).then_some([stroke, ratio])
 }
 
 /// Reads a bare file of points, poses or pairs, or a bare drawing, as a problem with every default; its name is the file's.

@@ -70,10 +70,13 @@ pub(crate) struct RawFunction {
     /// How far the crank has turned at each pair, degrees, counter-clockwise positive. Give input_deg and output_deg, or
     /// file, or of.
     pub input_deg: Option<Vec<Number>>,
-    /// How far the follower has turned at each pair, degrees.
+    /// How far the follower, or the block of an inverted slider-crank, has turned at each pair, degrees.
     pub output_deg: Option<Vec<Number>>,
+    /// In place of output_deg: how far a slider has moved at each pair, a length. Of a slider-crank the slider on its line, of
+    /// an inverted one the block along the rod.
+    pub output: Option<Vec<Number>>,
     /// A CSV file, named from the problem file's folder: columns input_deg, output_deg and optionally weight,
-    /// tolerance_deg.
+    /// tolerance_deg; or input_deg, output and optionally weight, tolerance.
     pub file: Option<String>,
     /// A formula in x, such as "log10(x)": the follower turns in proportion to its value as the crank does to x.
     pub of: Option<String>,
@@ -85,12 +88,16 @@ pub(crate) struct RawFunction {
     /// How far the follower turns between the least and the greatest value of the formula, degrees; or free, likewise: errors
     /// are then measured in parts of the range.
     pub output_range_deg: Option<RangeNumbers>,
+    /// How far a slider moves between the least and the greatest value of the formula, a length; in place of output_range_deg.
+    pub output_range: Option<Number>,
     /// The number of pairs taken of the formula, evenly in x; 61 where silent.
     pub samples: Option<Count>,
-    /// "free": inputs count from any angle of the crank; "ground": from the line A to B.
+    /// "free": inputs count from any angle of the crank; "ground": from the line A to B, of a slider-crank from the slider's
+    /// line.
     #[serde(default)]
     pub input_offset: AngleOffset,
-    /// The same of outputs and the follower.
+    /// The same of outputs and the follower. "ground" counts places of a slider from the foot of the perpendicular from A on
+    /// its line, those of a block from C.
     #[serde(default)]
     pub output_offset: AngleOffset,
     /// The sense in which the follower turns while the crank turns as written: "same", "opposite" or, where silent,
@@ -99,6 +106,8 @@ pub(crate) struct RawFunction {
     pub sense: Sense,
     /// The largest error of the output accepted, degrees, 0 or more: a number for every pair, or a list of one a pair.
     pub tolerance_deg: Option<OneOrEach>,
+    /// The largest error of a slider's place accepted, a length, likewise.
+    pub tolerance: Option<OneOrEach>,
     /// Weights of the squared errors, above 0, one a pair; where silent, all pairs count alike.
     pub weight: Option<Vec<Number>>,
 }

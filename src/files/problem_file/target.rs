@@ -45,6 +45,8 @@ pub(super) struct Target {
     pub samples: Option<usize>,
     /// Whether the points are no longer those of the source.
     pub resampled: bool,
+    /// Whether the outputs of a function are places of a slider.
+    pub of_places: bool,
 }
 
 impl Target {
@@ -108,7 +110,7 @@ impl Target {
             return toml.refuse_key("task.path", "the path has no points", help);
         };
         let kind = TaskKind::Path;
-        Ok(Target { kind, points, source, closed, samples, resampled: false })
+        Ok(Target { kind, points, source, closed, samples, resampled: false, of_places: false })
     }
 
     /// Reads the poses of a motion from its source; the second value holds their angles, `None` where only the place
@@ -154,20 +156,25 @@ impl Target {
         };
         let closed = motion.closed.unwrap_or(false);
         let kind = TaskKind::Motion;
-        Ok((Target { kind, points, source, closed, samples: None, resampled: false }, angles))
+        Ok((
+            Target { kind, points, source, closed, samples: None, resampled: false, of_places: false },
+            angles,
+        ))
     }
 
-    /// Reads the pairs of a function from its source.
+    /// Reads the pairs of a function from its source; without one they are the `ends` of a stroke: its length, and the time
+    /// ratio.
     pub fn of_function(
         toml: &TomlText<'_>,
         function: &RawFunction,
         whereabouts: &Whereabouts<'_>,
+        ends: Option<[f64; 2]>,
     ) -> Checked<Target> {
         let refuse = |key: &str, message: String, help: &str| {
             toml.refuse_key(&format!("task.function.{key}"), message, help)
         };
         let given = [
-            ("input_deg", function.input_deg.is_some() || function.output_deg.is_some()),
+            ("input_deg", function.input_deg.is_some() || super::function::outputs(function).is_some()),
             ("file", function.file.is_some()),
             ("of", function.of.is_some()),
         ];
@@ -181,6 +188,7 @@ impl Target {
             ("over", function.over.is_some()),
             ("input_range_deg", matches!(function.input_range_deg, Some(RangeNumbers::Given(_)))),
             ("output_range_deg", matches!(function.output_range_deg, Some(RangeNumbers::Given(_)))),
+            ("output_range", function.output_range.is_some()),
             ("samples", function.samples.is_some()),
         ];
         if let Some((key, _)) = of_formula.iter().find(|(_, there)| *there && function.of.is_none()) {
@@ -193,6 +201,7 @@ impl Target {
             };
             return refuse(key, message, help);
         }
+        let is_stroke = source.is_none() && ends.is_some();
         let (points, source) = match source {
             Some("input_deg") => (Self::pairs_here(toml, function)?, Source::File),
             Some("file") => {
@@ -204,28 +213,40 @@ impl Target {
                 (std::mem::take(&mut csv.points), Source::Csv(csv))
             }
             Some(_) => (super::function::of_formula(toml, function)?, Source::File),
+            // The slower way between the ends of the stroke.
+            None if ends.is_some() => {
+                let [stroke, ratio] = ends.unwrap_or_default();
+                (vec![[0.0, 0.0], [360.0 * ratio / (1.0 + ratio), stroke]], Source::File)
+            }
             None => {
-                let help = "add input_deg = [..] and output_deg = [..], or file = \"table.csv\", or of = \"log10(x)\"";
+                let help = "add input_deg = [..] and output_deg = [..] (or output = [..]), or file = \"table.csv\", or of = \"log10(x)\"";
                 return toml.refuse_key("task.function", "the function has no pairs", help);
             }
         };
         let kind = TaskKind::Function;
-        Ok(Target { kind, points, source, closed: false, samples: None, resampled: false })
+        let of_places = match &source {
+            Source::Csv(csv) => csv.of_places,
+            _ => function.output.is_some() || function.output_range.is_some() || is_stroke,
+        };
+        Ok(Target { kind, points, source, closed: false, samples: None, resampled: false, of_places })
     }
 
     /// Returns the pairs that the problem file itself gives.
     fn pairs_here(toml: &TomlText<'_>, function: &RawFunction) -> Checked<Vec<[f64; 2]>> {
-        let (Some(inputs), Some(outputs)) = (&function.input_deg, &function.output_deg) else {
+        let outputs = super::function::outputs(function);
+        let (Some(inputs), Some((key, outputs))) = (&function.input_deg, outputs) else {
             let missing = if function.input_deg.is_none() { "input_deg" } else { "output_deg" };
             let message = format!("the function has no {missing}");
-            let help = "give one angle of the crank (input_deg) and one of the follower (output_deg) a pair";
+            let help = "give one angle of the crank (input_deg) and one of the follower (output_deg), or a place of a slider \
+                        (output), a pair";
             return toml.refuse_key("task.function", message, help);
         };
         if inputs.len() != outputs.len() {
             let [inputs, outputs] =
                 [(inputs.len(), "input"), (outputs.len(), "output")].map(|(n, what)| counted(n, what));
             let message = format!("{inputs} and {outputs}");
-            return toml.refuse("task.function.output_deg", message, "give one output for each input");
+            let key = format!("task.function.{key}");
+            return toml.refuse(&key, message, "give one output for each input");
         }
         if inputs.len() > MAX_POINTS {
             let message = format!("{} pairs; at most {MAX_POINTS} are read", inputs.len());

@@ -12,7 +12,11 @@
 
 use super::sensitivity::At;
 use crate::mechanism::four_bar::gradient::{follower_gradient, ground_gradient, shape_gradient};
-use crate::mechanism::{Complex, FourBar, InvertedSliderCrank, OneLoop, SliderCrank, SliderLinkage, turned};
+use crate::mechanism::slider::SliderColumn;
+use crate::mechanism::{
+    Complex, FourBar, InvertedSliderCrank, OneLoop, SliderCrank, SliderLinkage, cross, dot, turned,
+};
+use crate::task::Output;
 
 /// The largest number of dimensions.
 pub(super) const MOST: usize = 9;
@@ -100,7 +104,7 @@ impl Dimensions for OfFourBar {
 
 /// The dimensions of a four-bar whose output counts: the derivatives are those of the follower's angle from the ground
 /// line, degrees, as real parts.
-pub(super) struct OfOutput(pub(super) FourBar);
+struct OfOutput(FourBar);
 
 impl Dimensions for OfOutput {
     fn names(&self) -> Vec<&'static str> {
@@ -126,6 +130,90 @@ impl Dimensions for OfOutput {
     }
 }
 
+/// The dimensions of a linkage with a slider whose output counts: the derivatives are those of the slider's place, or of the
+/// angle of the block from the ground line, degrees, as real parts.
+struct OfSliderOutput {
+    linkage: OneLoop,
+    output: Output,
+    rail: Option<OfSliderCrank>,
+}
+
+/// Returns the dimensions of a linkage whose output counts; `None` if it has no such output.
+pub(super) fn of_output(linkage: &OneLoop, output: Output, positions: &[At]) -> Option<Box<dyn Dimensions>> {
+    match (*linkage, output) {
+        (OneLoop::FourBar(linkage), Output::Angle) => Some(Box::new(OfOutput(linkage))),
+        (OneLoop::FourBar(_), Output::Place) | (OneLoop::SliderCrank(_), Output::Angle) => None,
+        (OneLoop::SliderCrank(of), Output::Place) => {
+            let rail = Some(OfSliderCrank::new(of, positions));
+            Some(Box::new(OfSliderOutput { linkage: *linkage, output, rail }))
+        }
+        (OneLoop::InvertedSliderCrank(_), _) => {
+            Some(Box::new(OfSliderOutput { linkage: *linkage, output, rail: None }))
+        }
+    }
+}
+
+impl Dimensions for OfSliderOutput {
+    fn names(&self) -> Vec<&'static str> {
+        match self.rail {
+            Some(_) => vec!["Ax", "Ay", "a", "b", "rail_from", "rail_to"],
+            None => vec!["Ax", "Ay", "Bx", "By", "a", "offset"],
+        }
+    }
+
+    fn columns(&self, at: &At) -> Option<Columns> {
+        let real = |value: f64| Complex::new(value, 0.0);
+        match (&self.linkage, &self.rail) {
+            (OneLoop::SliderCrank(linkage), Some(rail)) => {
+                let linkage = SliderLinkage::with_assembly(*linkage, at.assembly);
+                let (mut shape, by_crank) = linkage.gradient(at.crank_angle)?;
+                // The place counts from A's foot on the line: y - <A - Q, s>.
+                let s = linkage.line_direction();
+                let lag = SliderLinkage::crank_pivot(&linkage) - linkage.line_point();
+                for (k, moved) in [(0, -s.re), (1, -s.im), (4, s.re), (5, s.im), (6, -dot(lag, turned(s)))] {
+                    shape[k].place += moved;
+                }
+                let [ax, ay, a, b, qx, qy, turn, ..] = shape.map(|column| real(column.place));
+                let [from, to] = rail.by_ends([qx, qy], turn);
+                Some(([ax, ay, a, b, from, to, ZERO, ZERO, ZERO], real(by_crank.place)))
+            }
+            (OneLoop::InvertedSliderCrank(linkage), _) => {
+                let linkage = SliderLinkage::with_assembly(*linkage, at.assembly);
+                let (shape, by_crank) = linkage.gradient(at.crank_angle)?;
+                let coupler = linkage.position(at.crank_angle).joints()?.coupler;
+                let of = |column: &SliderColumn| match self.output {
+                    Output::Place => column.place,
+                    Output::Angle => (cross(coupler, column.coupler) / coupler.norm_sqr()).to_degrees(),
+                };
+                let mut columns = [ZERO; MOST];
+                columns.iter_mut().zip(&shape[..6]).for_each(|(by, column)| *by = real(of(column)));
+                if self.output == Output::Angle {
+                    // It counts from the ground line.
+                    let turned = self.of_ground();
+                    columns.iter_mut().zip(turned).for_each(|(by, turn)| *by -= real(turn.to_degrees()));
+                }
+                Some((columns, real(of(&by_crank))))
+            }
+            _ => None,
+        }
+    }
+
+    fn of_ground(&self) -> [f64; MOST] {
+        match (&self.linkage, &self.rail) {
+            (OneLoop::InvertedSliderCrank(linkage), _) => Dimensions::of_ground(linkage),
+            (_, Some(rail)) => rail.of_ground(),
+            _ => [0.0; MOST],
+        }
+    }
+
+    fn by_ground(&self, shifts: &[Complex]) -> Option<Complex> {
+        match &self.linkage {
+            OneLoop::InvertedSliderCrank(linkage) => Dimensions::by_ground(linkage, shifts),
+            _ => None,
+        }
+    }
+}
+
 /// The dimensions of a slider-crank.
 struct OfSliderCrank {
     linkage: SliderCrank,
@@ -146,6 +234,15 @@ impl OfSliderCrank {
         };
         OfSliderCrank { linkage, ends }
     }
+
+    /// Returns the derivatives by a shift of either end of the rail across it, from those by Q and by the line's angle.
+    fn by_ends(&self, [qx, qy]: [Complex; 2], turn: Complex) -> [Complex; 2] {
+        let across = turned(self.linkage.line_direction());
+        let aside = qx * across.re + qy * across.im;
+        let [from, to] = self.ends;
+        let per = 1.0 / (to - from);
+        [(aside * to - turn) * per, (turn - aside * from) * per]
+    }
 }
 
 impl Dimensions for OfSliderCrank {
@@ -157,12 +254,7 @@ impl Dimensions for OfSliderCrank {
         let linkage = SliderLinkage::with_assembly(self.linkage, at.assembly);
         let (shape, by_crank) = linkage.gradient(at.crank_angle)?;
         let [ax, ay, a, b, qx, qy, turn, x, y] = shape.map(|column| column.coupler_point);
-        let across = turned(linkage.line_direction());
-        let aside = qx * across.re + qy * across.im;
-        let [from, to] = self.ends;
-        let per = 1.0 / (to - from);
-        let rail_from = (aside * to - turn) * per;
-        let rail_to = (turn - aside * from) * per;
+        let [rail_from, rail_to] = self.by_ends([qx, qy], turn);
         Some(([ax, ay, a, b, rail_from, rail_to, x, y, ZERO], by_crank.coupler_point))
     }
 

@@ -22,11 +22,12 @@
 //! [`dimensions`](super::dimensions). `ground` moves B along A -> B; it is reported beside them, and is no part of the band
 //! because Bx and By are.
 
-use super::dimensions::{Dimensions, MOST, OfOutput, of_path};
+use super::dimensions::{Dimensions, MOST, of_output, of_path};
 pub use super::dimensions::{FLAT, is_flat};
 use super::sweep::Sweep;
 use crate::mechanism::effort::POINTS_AT_ONCE;
-use crate::mechanism::{AssemblyMode, Complex, FourBar, OneLoop, dot, length};
+use crate::mechanism::{AssemblyMode, Complex, OneLoop, dot, length};
+use crate::task::Output;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
@@ -121,15 +122,17 @@ pub fn sensitivity(linkage: impl Into<OneLoop>, positions: &[At], crank: Crank) 
     sensitivity_of(&*of_path(&linkage.into(), positions), positions, crank, None)
 }
 
-/// Computes the changes of the follower's angle at the given positions for errors of the dimensions, degrees; `None` if none
-/// of the positions has a derivative. `offset_is_free`: whether outputs count from any angle.
+/// Computes the changes of the output at the given positions for errors of the dimensions: of an angle in degrees, of a slider's
+/// place as a length. `None` if none of the positions has a derivative, or the linkage no such output. `offset_is_free`: whether
+/// outputs count from anywhere.
 pub fn output_sensitivity(
-    linkage: &FourBar,
+    linkage: impl Into<OneLoop>,
+    output: Output,
     positions: &[At],
-    crank: Crank,
-    offset_is_free: bool,
+    (crank, offset_is_free): (Crank, bool),
 ) -> Option<Sensitivity> {
-    sensitivity_of(&OfOutput(*linkage), positions, crank, Some(offset_is_free))
+    let of = of_output(&linkage.into(), output, positions)?;
+    sensitivity_of(&*of, positions, crank, Some(offset_is_free))
 }
 
 /// As [`sensitivity`], or as [`output_sensitivity`] where `output` says whether its offset is free.

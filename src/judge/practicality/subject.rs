@@ -9,7 +9,7 @@ use crate::judge::referee::judge;
 use crate::mechanism::{AssemblyMode, OneLoop};
 use crate::record::Candidate;
 use crate::task::spec::TransmissionOver;
-use crate::task::{AngleOffset, Problem, TaskKind, Timing};
+use crate::task::{AngleOffset, Output, Problem, TaskKind, Timing};
 
 /// Number of positions on each stretch of the motion at which the path of a linkage without a target is examined.
 const POSITIONS: usize = 72;
@@ -31,6 +31,8 @@ pub struct Practicality {
     pub at_points: bool,
     /// The kind of the task. Of a motion, the path of the body's origin is examined, of a function the output.
     pub kind: TaskKind,
+    /// The output of a function; `None` of another task.
+    pub output: Option<Output>,
 }
 
 impl Practicality {
@@ -41,8 +43,9 @@ impl Practicality {
     pub fn of_candidate(problem: &Problem, candidate: &Candidate, build: Build) -> Option<Self> {
         let sweep = Sweep::of_candidate(problem, candidate)?;
         let felt = sensitivity_of(problem, candidate);
-        let kind = problem.spec().task.kind();
-        Some(Practicality { kind, ..Practicality::of(sweep, build, felt, true) })
+        let task = &problem.spec().task;
+        let (kind, output) = (task.kind(), task.output.as_ref().map(|output| output.output));
+        Some(Practicality { kind, output, ..Practicality::of(sweep, build, felt, true) })
     }
 
     /// Examines a linkage by itself over its whole motion without passing a toggle ([`Sweep::of_linkage`]), and the
@@ -55,7 +58,16 @@ impl Practicality {
 
     fn of(sweep: Sweep, build: Build, sensitivity: Option<Sensitivity>, at_points: bool) -> Self {
         let (layering, distances) = (layering(&sweep, build), pivot_distances(&sweep));
-        Practicality { sweep, build, layering, distances, sensitivity, at_points, kind: TaskKind::Path }
+        Practicality {
+            sweep,
+            build,
+            layering,
+            distances,
+            sensitivity,
+            at_points,
+            kind: TaskKind::Path,
+            output: None,
+        }
     }
 }
 
@@ -89,14 +101,15 @@ impl At {
 }
 
 /// Returns the sensitivity of a candidate: of its path, or in a function of its output; `None` if no position has a
-/// derivative, or of the output of a slider.
+/// derivative.
 pub fn sensitivity_of(problem: &Problem, candidate: &Candidate) -> Option<Sensitivity> {
     let (at, crank) = (At::of_candidate(problem, candidate), crank_of(problem));
     match problem.task().body().filter(|_| problem.is_function()) {
         None => sensitivity(candidate.linkage, &at, crank),
         Some(output) => {
-            let linkage = candidate.linkage.four_bar()?;
-            output_sensitivity(linkage, &at, crank, output.given_frame(0.0).is_none())
+            let kind = if output.is_of_places() { Output::Place } else { Output::Angle };
+            let is_free = output.given_frame(0.0).is_none();
+            output_sensitivity(candidate.linkage, kind, &at, (crank, is_free))
         }
     }
 }

@@ -7,10 +7,12 @@ mod closing;
 mod defects;
 mod direction;
 mod extent_max;
+mod input;
 mod link_ratio;
 mod linkage_type;
 mod longest_max;
 mod pivot_on;
+mod stroke;
 mod tolerance;
 mod transmission;
 
@@ -66,6 +68,7 @@ impl Judged<'_> {
     pub fn row(&self, kind: RequirementKind) -> Option<Requirement> {
         let Finding { value, limit, met } = match kind {
             RequirementKind::Type => linkage_type::judged(self),
+            RequirementKind::Input => input::judged(self),
             RequirementKind::Transmission => transmission::judged(self),
             RequirementKind::LinkRatio => link_ratio::judged(self),
             RequirementKind::PivotsIn => boxes::pivots(self),
@@ -74,6 +77,8 @@ impl Judged<'_> {
             RequirementKind::FootprintIn => boxes::footprint(self),
             RequirementKind::ExtentMax => extent_max::judged(self),
             RequirementKind::LongestMax => longest_max::judged(self),
+            RequirementKind::Stroke => stroke::length(self),
+            RequirementKind::TimeRatio => stroke::time_ratio(self),
             RequirementKind::Direction => direction::judged(self),
             RequirementKind::Order => defects::order(self),
             RequirementKind::Branch => defects::branch(self),

@@ -1,8 +1,11 @@
-//! The errors of the targets that come nearest to missing their tolerances: of the place, and of the body's angle.
+//! The errors of the targets that come nearest to missing their tolerances: of the place, of the angle of a link, and of a slider's place.
 
 use super::{Finding, Judged, at_most};
 
 pub(super) fn judged(judged: &Judged<'_>) -> Option<Finding> {
+    if judged.problem.spec().task.is_of_places() {
+        return of_link(judged);
+    }
     let tolerances = judged.problem.task().tolerances()?;
     let structural = &judged.error.structural;
     let errors: Vec<f64> = structural.iter().map(|error| error.norm()).collect();
@@ -10,6 +13,11 @@ pub(super) fn judged(judged: &Judged<'_>) -> Option<Finding> {
 }
 
 pub(super) fn of_angles(judged: &Judged<'_>) -> Option<Finding> {
+    if judged.problem.spec().task.is_of_places() { None } else { of_link(judged) }
+}
+
+/// Returns the finding on the angles of a link, or on the places of a slider, which stand for degrees.
+fn of_link(judged: &Judged<'_>) -> Option<Finding> {
     let tolerances = judged.problem.task().body()?.tolerances.as_ref()?;
     let given = judged.error.angle.as_ref()?.structural.iter().zip(tolerances);
     let given =

@@ -231,6 +231,15 @@ impl Comparison<'_> {
             ("input_range_deg", recorded.input_range_deg, found.input_range_deg),
             ("output_range_deg", recorded.output_range_deg, found.output_range_deg),
         ];
+        match (recorded.output_offset, found.output_offset) {
+            (Some(one), Some(other)) => {
+                self.number("output_offset", one, other, self.problem.task().error_size());
+            }
+            (one, other) => {
+                let word = |there: bool| if there { "there" } else { "absent" };
+                self.same("output_offset", word(one.is_some()), word(other.is_some()));
+            }
+        }
         for (name, recorded, found) in offsets {
             match (recorded, found) {
                 (Some(recorded), Some(found)) => {

@@ -11,7 +11,8 @@ use super::four_bar::transmission::TransmissionExtremes;
 use super::{
     AssemblyMode, Branch, Circuit, Complex, FourBar, InputArc, InputRange, InvertedSliderCrank,
     InvertedSliderCrankParameters, Joints, LinkageError, LinkageType, NaturalCoordinates, OnCircuit,
-    SliderCrank, SliderCrankParameters, SliderJoints, SliderLinkage, SliderPosition, least_and_greatest, xy,
+    SliderCrank, SliderCrankParameters, SliderJoints, SliderLinkage, SliderPosition, dot, least_and_greatest,
+    xy,
 };
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -296,6 +297,32 @@ impl OneLoop {
             }
             OneLoop::SliderCrank(linkage) => of_slider(linkage.position_with(crank_angle, assembly)),
             OneLoop::InvertedSliderCrank(linkage) => of_slider(linkage.position_with(crank_angle, assembly)),
+        }
+    }
+
+    /// Computes the angle of the output link at a position from the x axis, radians: of the follower of a four-bar, of the
+    /// block of an inverted slider-crank, which turns with the coupler. `None` of a slider-crank, whose slider does not turn.
+    pub fn output_angle(&self, at: &LoopJoints) -> Option<f64> {
+        match self {
+            OneLoop::FourBar(linkage) => Some((at.joints.follower_pin - linkage.follower_pivot()).arg()),
+            OneLoop::SliderCrank(_) => None,
+            OneLoop::InvertedSliderCrank(_) => Some(at.coupler.arg()),
+        }
+    }
+
+    /// Computes the place of the slider at a position: of a slider-crank along its line, in the line's direction from the foot
+    /// of the perpendicular from A; of an inverted one that of the block along the coupler's line from C. `None` of a
+    /// four-bar.
+    pub fn slider_place(&self, at: &LoopJoints) -> Option<f64> {
+        let Joints { crank_pin, follower_pin, .. } = at.joints;
+        match self {
+            OneLoop::FourBar(_) => None,
+            OneLoop::SliderCrank(linkage) => {
+                Some(dot(follower_pin - linkage.crank_pivot(), linkage.line_direction()))
+            }
+            OneLoop::InvertedSliderCrank(_) => {
+                Some(dot(follower_pin - crank_pin, at.coupler) / at.coupler.norm())
+            }
         }
     }
 

@@ -142,6 +142,11 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
             match subject.carried {
                 None => {}
                 Some(linkage_file::Carried::Body(frame_deg)) => object["frame_deg"] = frame_deg.into(),
+                Some(linkage_file::Carried::Places([input, output], sense)) => {
+                    object["input_offset_deg"] = input.into();
+                    object["output_offset"] = output.into();
+                    object["sense"] = super::words::sense(sense).into();
+                }
                 Some(linkage_file::Carried::Function([input, output], sense)) => {
                     object["input_offset_deg"] = input.into();
                     object["output_offset_deg"] = output.into();

@@ -8,7 +8,7 @@ use crate::mechanism::Unit;
 use crate::mechanism::{LoopKind, OneLoop};
 use crate::record::{Candidate, Record};
 use crate::report::text::{clean, significant};
-use crate::report::words;
+use crate::report::{output, words};
 use maud::{Markup, html};
 
 /// The largest number of characters of a name in a linkage file.
@@ -37,7 +37,8 @@ pub(super) fn dimensions(record: &Record, c: &Candidate, short: &str) -> Markup 
             minus(&significant(frame_deg, 6))
         )
     });
-    let function = words::offsets(c).map(|offsets| format!("At an input and an output of 0: {offsets}."));
+    let function = output::offsets(c, &words::unit_suffix(record))
+        .map(|offsets| format!("At an input and an output of 0: {offsets}."));
     let text = match function {
         // P is the follower's pin.
         Some(function) => format!("Ground AB {ground}{unit}. {function}"),

@@ -5,6 +5,7 @@ use super::table::{minus, scrolling};
 use crate::record::{Candidate, Record};
 use crate::report::function::{GeneratedPair, chart_svg, pairs};
 use crate::report::text::{NO_NUMBER, significant};
+use crate::report::words;
 use maud::{Markup, html};
 
 /// The most pairs in the table.
@@ -14,13 +15,10 @@ const MOST_PAIRS: usize = 400;
 pub(super) fn function(record: &Record, c: &Candidate, title: &str) -> Markup {
     let Some(chart) = chart_svg(record, c) else { return Markup::default() };
     let all = pairs(&record.problem.resolved.task, c);
-    let heads = [
-        ("pair", true),
-        ("input °", true),
-        ("output wanted °", true),
-        ("generated °", true),
-        ("error °", true),
-    ];
+    let unit = words::error_unit(record).trim().to_owned();
+    let [wanted, generated, error] =
+        ["output wanted", "generated", "error"].map(|head| format!("{head} {unit}").trim_end().to_owned());
+    let heads = [("pair", true), ("input °", true), (&wanted, true), (&generated, true), (&error, true)];
     let number = |value: f64| minus(&significant(value, 6));
     let row = |(i, pair): (usize, &GeneratedPair)| {
         let of = |value: Option<f64>, digits: usize| {

@@ -10,7 +10,7 @@ use crate::record::{Candidate, Record};
 use crate::report::Colour;
 use crate::report::practicality::{Words, degrees, held, objection, shift};
 use crate::report::text::significant;
-use crate::task::{Problem, TaskKind};
+use crate::task::Problem;
 use maud::{Markup, html};
 
 /// The number of significant digits of distances and of rates.
@@ -57,7 +57,7 @@ fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<Markup> 
         }
         @if let Some(distances) = &found.distances { (joints(distances, hole)) }
         @if let Some(felt) = &found.sensitivity {
-            (sensitivities(felt, found.kind))
+            (sensitivities(felt, &found))
             (paragraph("", &words.together(felt, &found, usual_tolerance(c.linkage, unit))))
         }
         (paragraph("notes", NOTES))
@@ -85,7 +85,7 @@ fn joints(distances: &[PivotDistance], hole: f64) -> Markup {
 }
 
 /// Returns the table of each dimension's effect on the path.
-fn sensitivities(felt: &Sensitivity, kind: TaskKind) -> Markup {
+fn sensitivities(felt: &Sensitivity, found: &Practicality) -> Markup {
     let columns: [Column<&Dimension>; 2] = [
         ("rms", true, &|d| Cell::number(None, significant(d.rms, 3))),
         ("most", true, &|d| Cell::number(None, significant(d.worst, 3))),
@@ -95,7 +95,7 @@ fn sensitivities(felt: &Sensitivity, kind: TaskKind) -> Markup {
     html! {
         details {
             summary { "What an error of each dimension does" }
-            (paragraph("notes", &shift(felt, kind)))
+            (paragraph("notes", &shift(felt, found)))
             (tabulated(("Sensitivities", "tight"), ("dimension", false), &columns, rows))
         }
     }

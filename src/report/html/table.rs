@@ -5,7 +5,7 @@ use super::extras::{Shown, extras};
 use super::page::{paragraph, section, still};
 use crate::record::{AngleErrorRecord, Candidate, Record};
 use crate::report::text::{NO_NUMBER, significant};
-use crate::report::words;
+use crate::report::{output, words};
 use crate::task::spec::{Measure, TransmissionOver};
 use maud::{Markup, Render, html};
 
@@ -130,6 +130,8 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         c.error.angle.as_ref().map_or(Cell::words(NO_NUMBER), |angle| Cell::degrees(of(angle)))
     };
     let [angle_rms, angle_max] = ["angle rms", "angle largest"];
+    let (output_from, unit) =
+        (format!("{} from", output::link(&record.problem.resolved)), words::error_unit(record));
     let from = |deg: Option<f64>, through: Option<f64>| {
         let through = through.map_or_else(String::new, |range| format!(" +{range:.2}°"));
         deg.map_or(Cell::words(NO_NUMBER), |deg| Cell::number(deg, minus(&format!("{deg:.2}°")) + &through))
@@ -144,7 +146,10 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
             Cell::figure(if ranks.is_none() { c.error.sum_sq } else { c.error.objective }, 5)
         }),
         ("crank from", true, &|c| from(c.input_offset_deg, c.input_range_deg)),
-        ("follower from", true, &|c| from(c.output_offset_deg, c.output_range_deg)),
+        (&output_from, true, &|c| match c.output_offset {
+            Some(place) => Cell::number(place, minus(&significant(place, 5)) + &unit),
+            None => from(c.output_offset_deg, c.output_range_deg),
+        }),
         ("to curve", true, &|c| Cell::figure(c.error.to_curve.rms, 4)),
         ("type", false, &|c| Cell::words(c.type_name())),
         ("transmission", true, &|c| Cell::degrees(c.transmission_deg.worst)),
@@ -155,7 +160,7 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         ("verdict", false, &|c| Cell::verdict(verdict(record, c), c.accepted)),
     ];
     let (of_motion, of_function) = (task.is_motion(), task.is_function());
-    let [crank_from, follower_from] = ["crank from", "follower from"];
+    let [crank_from, follower_from] = ["crank from", output_from.as_str()];
     let is_shown = |column: &&Column<&Candidate>| match column.0 {
         name if [angle_rms, angle_max].contains(&name) => of_motion,
         name if [crank_from, follower_from].contains(&name) => of_function,
@@ -177,7 +182,12 @@ pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
         unit => format!("Lengths in {unit}. "),
     };
     let first = ranks.as_ref().map_or(String::new(), |(_, sentence)| format!("{sentence} "));
-    let notes = if of_function {
+    let notes = if task.is_of_places() {
+        "rms error, largest: of the slider's place. crank from: its angle from the slider's line, or from the line A-B, at an \
+         input of 0; then the slider's place at an output of 0, from the foot of the perpendicular from A, or the block's along \
+         the rod from C. transmission: the worst angle, 0 to 90°, over the crank's full turn or the part used. link ratio: \
+         longest to shortest link. Pairs count from 0."
+    } else if of_function {
         "rms error, largest: of the follower's angle, degrees. crank, follower from: their angles from the line A-B at an \
          input and an output of 0. transmission: the worst angle, 0 to 90°, over the crank's full turn or the part used. \
          link ratio: longest to shortest link. Pairs count from 0."

@@ -16,7 +16,7 @@ use crate::task::forms::slider::fit::{Angles, SliderFit};
 use crate::task::forms::slider::limits::Limited;
 use crate::task::forms::slider::shape::{Closure, FRAME, OFFSET, SliderShape};
 use crate::task::ranges::Reference;
-use crate::task::{AngleOffset, Problem, Timing};
+use crate::task::{AngleOffset, Output, Problem, Timing};
 use std::f64::consts::PI;
 
 /// Fits a candidate with a slider to the context's problem from where it stands, with at most so many evaluations and until
@@ -50,7 +50,7 @@ pub(super) fn start_at(problem: &Problem, target: &Target, candidate: &Candidate
     let at = candidate.crank_deg.iter().zip(&candidate.t1_at);
     Some(Start {
         kind: linkage.kind(),
-        x: shape.unknowns(offset, candidate.frame_deg.unwrap_or(0.0).to_radians()),
+        x: shape.unknowns(offset, frame_of(problem, target, candidate)),
         positions: if is_free { at.map(position).collect::<Option<_>>()? } else { Vec::new() },
         assembly: linkage.assembly(),
         direction,
@@ -58,14 +58,31 @@ pub(super) fn start_at(problem: &Problem, target: &Target, candidate: &Candidate
     })
 }
 
+/// Returns the frame of a candidate in the units of a fit: of a motion's body, or of a function's outputs; 0 if it is given.
+fn frame_of(problem: &Problem, target: &Target, candidate: &Candidate) -> f64 {
+    let Some(outputs) = &target.outputs else { return candidate.frame_deg.unwrap_or(0.0).to_radians() };
+    if problem.task().body().is_none_or(|body| body.given_frame(0.0).is_some()) {
+        return 0.0;
+    }
+    let frame = candidate.own_frame_deg().unwrap_or(0.0);
+    match outputs.kind {
+        Output::Angle => frame.to_radians(),
+        Output::Place => frame / target.size,
+    }
+}
+
 /// Returns a start of a slider-crank with its line seen in the sense that is nearest to its bounds.
-fn aligned(limits: &Limited, mut start: Start) -> Start {
+fn aligned(limits: &Limited, is_of_places: bool, mut start: Start) -> Start {
     if start.kind == LoopKind::SliderCrank {
         let (angle, is_turned) = limits.line_angle(start.x[5]);
         start.x[5] = angle;
         if is_turned {
             start.x[4] = -start.x[4];
             start.assembly = start.assembly.opposite();
+            // The slider's places count the other way.
+            if is_of_places {
+                (start.direction, start.x[FRAME]) = (-start.direction, -start.x[FRAME]);
+            }
         }
     }
     start
@@ -85,7 +102,7 @@ pub(super) struct Fits<'a> {
 impl<'a> Fits<'a> {
     /// Creates the fits with an allowance of evaluations, of which a weighted sum of squares of at most `exact` ends one.
     pub(super) fn new(context: Context<'a>, target: &'a Target, exact: f64, allowance: u64) -> Self {
-        Fits { context, target, exact: exact / (target.size * target.size), allowance, used: 0 }
+        Fits { context, target, exact: exact / target.unit_sq(), allowance, used: 0 }
     }
 
     fn is_at_its_end(&self) -> bool {
@@ -106,6 +123,8 @@ impl<'a> Fits<'a> {
             points: &self.target.points,
             weights: &self.target.weights,
             body: self.target.body.as_ref(),
+            outputs: self.target.outputs.as_ref(),
+            sign: start.direction,
             angles,
             limits,
             sense: 0.0,
@@ -116,9 +135,10 @@ impl<'a> Fits<'a> {
 
     /// Fits from a start, and returns the end with its merit; `None` if it is given up.
     pub(super) fn run(&mut self, limits: &Limited, start: Start, effort: Effort) -> Option<(f64, Start)> {
-        match self.target.body {
-            None => self.run_on::<2>(limits, start, effort),
-            Some(_) => self.run_on::<3>(limits, start, effort),
+        match (&self.target.body, &self.target.outputs) {
+            (_, Some(_)) => self.run_on::<1>(limits, start, effort),
+            (None, None) => self.run_on::<2>(limits, start, effort),
+            (Some(_), None) => self.run_on::<3>(limits, start, effort),
         }
     }
 
@@ -132,8 +152,10 @@ impl<'a> Fits<'a> {
         if self.is_at_its_end() {
             return None;
         }
-        let (limits, start) = (limits.turning(start.turns), aligned(limits, start));
+        let is_of_places = self.is_of_places();
+        let (limits, start) = (limits.turning(start.turns), aligned(limits, is_of_places, start));
         let weight: f64 = self.target.weights.iter().sum();
+        let radian = self.target.outputs.as_ref().map_or(1.0, |outputs| outputs.weight);
         let options = LmOptions {
             max_steps: effort.steps,
             max_rounds: effort.rounds,
@@ -141,7 +163,7 @@ impl<'a> Fits<'a> {
             relative_reduction: effort.relative_reduction,
             exact_cost: 1e-6 * self.exact,
             feasibility: 1e-9,
-            hopeless_cost: 0.04 * weight,
+            hopeless_cost: 0.04 * weight * radian * radian,
         };
         let fit = self.fit::<R>(&limits, &start);
         let (positions, context) = (start.positions.clone(), self.context);
@@ -150,6 +172,10 @@ impl<'a> Fits<'a> {
         let usable = !matches!(end.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
         let merit = end.cost + weight * end.violation * end.violation;
         usable.then_some((merit, Start { x: end.x, positions: end.state, ..start }))
+    }
+
+    fn is_of_places(&self) -> bool {
+        self.target.outputs.as_ref().is_some_and(|outputs| outputs.kind == Output::Place)
     }
 
     /// Draws the starts of a path with their misfits.
@@ -176,6 +202,22 @@ impl<'a> Fits<'a> {
         drawn
     }
 
+    /// Returns the starts of a function with their costs.
+    pub(super) fn glanced_outputs(&mut self, limits: &Limited, starts: Vec<Start>) -> Vec<(f64, Start)> {
+        let is_of_places = self.is_of_places();
+        let mut glanced = Vec::with_capacity(starts.len());
+        for start in starts {
+            if self.is_at_its_end() {
+                break;
+            }
+            self.used += 1;
+            let start = aligned(limits, is_of_places, start);
+            let cost = self.fit::<1>(limits, &start).cost(&start.x, &start.positions);
+            glanced.extend(cost.map(|cost| (cost, start)));
+        }
+        glanced
+    }
+
     /// Returns the starts of a motion with their costs, those on one branch first if one is required.
     pub(super) fn glanced(&mut self, limits: &Limited, starts: Vec<Start>) -> Vec<(f64, Start)> {
         let one_branch = !self.context.problem.branch_any();
@@ -186,7 +228,7 @@ impl<'a> Fits<'a> {
                 break;
             }
             self.used += 1;
-            let start = aligned(limits, start);
+            let start = aligned(limits, false, start);
             let Some(cost) = self.fit::<3>(limits, &start).cost(&start.x, &start.positions) else { continue };
             let Some(shape) = SliderShape::of(start.kind, &start.x) else { continue };
             let mut signs = start.positions.iter().map(|position| shape.assembly_of(*position));
@@ -202,11 +244,23 @@ impl<'a> Fits<'a> {
         const UNKNOWN: CurveErrorRecord = CurveErrorRecord { sum_sq: 0.0, rms: 0.0, max: 0.0 };
         let problem = self.context.problem;
         let Target { size, centre, .. } = *self.target;
-        let unit = SliderShape::of(end.kind, &end.x)?;
+        let mut unit = SliderShape::of(end.kind, &end.x)?;
+        if let (Some(_), Closure::Line { coupler, .. }) = (&self.target.outputs, unit.closure) {
+            // P of a function is drawn at the slider's pin.
+            unit.offset = Complex::new(coupler, 0.0);
+        }
         let shape = unit.carried(Complex::new(size, 0.0), centre);
         let sign = |position: &[Complex; 2]| unit.assembly_of(*position);
         let first = end.positions.first().map_or(end.assembly, sign);
-        let linkage = shape.linkage(first).ok()?;
+        // Where crank angles or places count along the line, its sense stays, and so does t1.
+        let counts_along =
+            matches!(problem.task().timing(), Timing::Prescribed { offset: AngleOffset::Ground, .. });
+        let keeps = matches!(shape.closure, Closure::Line { .. }) && (counts_along || problem.is_function());
+        let linkage = match keeps {
+            true => shape.linkage(AssemblyMode::Plus).ok()?.with_assembly(first),
+            false => shape.linkage(first).ok()?,
+        };
+        let own = if keeps { first } else { AssemblyMode::Plus };
         let (crank_deg, assemblies) = match problem.task().timing() {
             Timing::Free => {
                 // Seen from the first position, whose sign is +1.
@@ -223,7 +277,7 @@ impl<'a> Fits<'a> {
                 let written = &problem.spec().task.timing.as_ref()?.crank_deg;
                 let run = problem.run(end.direction);
                 let crank_deg: Vec<f64> = written.iter().map(|deg| base + run * deg).collect();
-                let t1 = vec![AssemblyMode::Plus; crank_deg.len()];
+                let t1 = vec![own; crank_deg.len()];
                 (crank_deg, t1)
             }
         };

@@ -1,8 +1,9 @@
-//! Multistart search for linkages with a slider, for paths and motions with prescribed or free timing: drawn shapes laid on
-//! the target or dyads through its poses, Levenberg-Marquardt fits with the closure of their kind, and a stopping rule by
+//! Multistart search for linkages with a slider, for paths and motions with prescribed or free timing and for functions:
+//! drawn shapes laid on the target, dyads through its poses, or linear solutions of its pairs, Levenberg-Marquardt fits with the closure of their kind, and a stopping rule by
 //! repeated hits of the best answer.
 //!
-//! A round draws `DRAWS` shapes of one kind ([`starts`]), or pairs dyads that suit the poses ([`guided`]), fits the `SHORT`
+//! A round draws `DRAWS` shapes of one kind ([`starts`]), or pairs dyads that suit the poses ([`guided`]), or solves for shapes that suit the pairs of a function
+//! ([`output_starts`]), fits the `SHORT`
 //! that are nearest to the target for a few steps and the best `LONG` of those to convergence, and has the ends judged
 //! ([`fits`]). Kinds take turns. Rounds run in parallel in batches and are read in their order: the number of threads changes
 //! nothing but the time. The search ends when enough rounds have reached the best answer (or the search has gone on for
@@ -13,11 +14,13 @@
 
 mod fits;
 mod guided;
+mod output_starts;
 mod starts;
 
 use super::Context;
 use super::constants::sliders::{
-    BATCH, FAMILY_BATCHES, GLIMPSE, KEPT, LEAST_POLISHED, LONG, LONG_FIT, POLISH, SHORT, SHORT_FIT, STOPPING,
+    APART, BATCH, FAMILY_BATCHES, GLIMPSE, KEPT, LEAST_POLISHED, LONG, LONG_FIT, POLISH, SHORT, SHORT_FIT,
+    STOPPING,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, drive, in_parallel};
 use super::family::{climb, freedom_within, one_is_enough};
@@ -29,9 +32,11 @@ use crate::numbers::arithmetic::streams::stream;
 use crate::record::{Candidate, Reason};
 use crate::task::Problem;
 use crate::task::forms::slider::limits::Limited;
+use crate::task::forms::slider::shape::SHAPE;
 pub(super) use fits::refit;
 use fits::{Fits, start_at};
 use guided::Guided;
+use output_starts::output_starts;
 use rayon::prelude::*;
 use starts::{Start, Target};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -66,7 +71,8 @@ impl<'a> Sliders<'a> {
         let earlier = context.keeper.and_then(|keeper| keeper.earlier().sliders.clone());
         let (guided, exact) = (Guided::of(problem), exact_cost(problem));
         let at = RepeatedState::of(problem, earlier);
-        let freedom = kinds.iter().map(|(_, limits)| freedom_within(problem, &limits.bounds)).max()?;
+        let freedom =
+            kinds.iter().map(|(kind, limits)| freedom_within(problem, *kind, &limits.bounds)).max()?;
         Some(Sliders { target, guided, kinds, exact, freedom, glimpse: None, at })
     }
 
@@ -136,12 +142,14 @@ impl<'a> Sliders<'a> {
         let mut outcome = RoundOutcome::default();
         let mut draws = stream(problem.spec().solve.seed, STREAMS + index);
         let (kind, limits) = &self.kinds[index as usize % self.kinds.len()];
-        let mut drawn: Vec<(f64, Start)> = match &self.guided {
-            Some(guided) => {
-                let first = (index as usize) < self.kinds.len();
-                fits.glanced(limits, guided.starts(target, *kind, first, &mut draws))
+        let first = (index as usize) < self.kinds.len();
+        let mut drawn: Vec<(f64, Start)> = match (&self.guided, &target.outputs) {
+            (_, Some(outputs)) => {
+                let starts = output_starts(problem, (target, outputs), (*kind, limits), first, &mut draws);
+                fits.glanced_outputs(limits, starts)
             }
-            None => fits.drawn((*kind, limits), &mut draws),
+            (Some(guided), None) => fits.glanced(limits, guided.starts(target, *kind, first, &mut draws)),
+            (None, None) => fits.drawn((*kind, limits), &mut draws),
         };
         outcome.draws = fits.used;
         by_merit(&mut drawn, SHORT);
@@ -149,7 +157,8 @@ impl<'a> Sliders<'a> {
         for (_, start) in drawn {
             fitted.extend(fits.run(limits, start, SHORT_FIT));
         }
-        by_merit(&mut fitted, LONG);
+        by_merit(&mut fitted, SHORT);
+        let fitted = distinct(fitted, LONG);
         let judging = context.judging();
         for (_, start) in fitted {
             let Some((_, end)) = fits.run(limits, start, LONG_FIT) else { continue };
@@ -208,6 +217,28 @@ impl<'a> Sliders<'a> {
         sort(problem, &mut self.at.found);
         best(self) < before
     }
+}
+
+/// Returns the first `most` starts, in the order of their merits, that lie apart from those before them: two that run into one
+/// another would come to the same end.
+fn distinct(starts: Vec<(f64, Start)>, most: usize) -> Vec<(f64, Start)> {
+    let mut taken: Vec<(f64, Start)> = Vec::with_capacity(most);
+    for start in starts {
+        if taken.len() < most && !taken.iter().any(|(_, other)| are_near(&start.1, other)) {
+            taken.push(start);
+        }
+    }
+    taken
+}
+
+/// Returns whether the unknowns of two starts differ by less than `APART` of their size.
+fn are_near(one: &Start, other: &Start) -> bool {
+    let [mut apart, mut size] = [0.0, 0.0];
+    for (x, y) in one.x.iter().zip(&other.x).take(SHAPE) {
+        apart += (x - y) * (x - y);
+        size += x * x + y * y;
+    }
+    one.kind == other.kind && one.assembly == other.assembly && apart < APART * APART * size
 }
 
 impl Strategy for Sliders<'_> {

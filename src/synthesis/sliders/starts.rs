@@ -10,6 +10,7 @@ use crate::mechanism::{AssemblyMode, Circuit, Complex, InputArc, LoopKind};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::synthesis::atlas::{EVEN, Even, ON_ARC, OnArc, TRACED, Traced, arc_misfits, fraction};
 use crate::task::forms::slider::fit::BodyAngles;
+use crate::task::forms::slider::output::Outputs;
 use crate::task::forms::slider::shape::{Closure, OFFSET, SliderShape, Unknowns};
 use crate::task::forms::torus::Positions;
 use crate::task::{AngleOffset, Problem, Timing};
@@ -43,6 +44,8 @@ pub(super) struct Target {
     on_arc: Option<OnArc>,
     /// The angles of a motion's body.
     pub(super) body: Option<BodyAngles>,
+    /// The outputs of a function.
+    pub(super) outputs: Option<Outputs>,
 }
 
 impl Target {
@@ -51,14 +54,31 @@ impl Target {
         let (centre, size) = (task.centre(), task.size());
         let points: Vec<Complex> = task.points().iter().map(|p| (p - centre) / size).collect();
         let is_closed = task.closed() || task.repeats_first();
+        let outputs = Outputs::of(problem);
         let body = task
             .body()
+            .filter(|_| outputs.is_none())
             .map(|body| BodyAngles { angles: body.angles.clone(), weight: body.angle_weight / size });
         let mut along = vec![0.0];
         for w in points.windows(2) {
             along.push(along[along.len() - 1] + (w[1] - w[0]).norm());
         }
         let mut whole = along[along.len() - 1];
+        if let Some(outputs) = outputs {
+            let weights = task.weights().to_vec();
+            return Target {
+                points,
+                weights,
+                centre,
+                size,
+                along: Vec::new(),
+                is_closed: false,
+                even: None,
+                on_arc: None,
+                body: None,
+                outputs: Some(outputs),
+            };
+        }
         if task.closed() && !task.repeats_first() {
             whole += (points[0] - points[points.len() - 1]).norm();
         }
@@ -87,7 +107,13 @@ impl Target {
             along,
             is_closed,
             body,
+            outputs: None,
         }
+    }
+
+    /// Returns the unit of a squared error: the objective is this many times the cost of a fit.
+    pub(super) fn unit_sq(&self) -> f64 {
+        self.outputs.as_ref().map_or(self.size * self.size, |outputs| outputs.unit(self.size))
     }
 }
 

@@ -24,7 +24,7 @@ use crate::mechanism::four_bar::position::Kernel;
 use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType, point};
 use crate::numbers::optimise::population::{Fitness, PopulationProblem};
 use crate::task::spec::Objective;
-use crate::task::{Body, Problem, Setting, Timing, best_frame};
+use crate::task::{Body, Problem, Setting, Timing};
 use std::f64::consts::TAU;
 
 /// Number of samples of a circuit for free timing.
@@ -118,7 +118,7 @@ impl<'a> BodyFitness<'a> {
                 }
                 let frame = self.body.given_frame(ground).unwrap_or_else(|| match self.is_largest {
                     true => self.body.frame_within(&apart, task.weights(), true),
-                    false => best_frame(&apart, task.weights()),
+                    false => self.body.best_frame(&apart, task.weights()),
                 });
                 let error = |j: usize| apart[j].map_or(0.0, |apart: f64| wrapped(apart - frame));
                 let cost = self.total((0..n).map(|j| self.part(j, places[j], error(j))));

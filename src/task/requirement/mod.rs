@@ -11,6 +11,7 @@ mod closing;
 mod direction;
 mod extent_max;
 mod footprint_in;
+mod input;
 mod limit;
 mod link_ratio;
 mod linkage_type;
@@ -19,6 +20,7 @@ mod order;
 mod pins_in;
 mod pivot_on;
 mod pivots_in;
+mod stroke;
 mod tolerance;
 mod tolerance_deg;
 mod transmission;
@@ -32,8 +34,10 @@ pub use transmission::TransmissionOver;
 use crate::mechanism::LinkageType;
 use crate::task::pivot_on::{Locus, PivotOn};
 use crate::task::region::Region;
-use crate::task::spec::{ClosingPolicy, DirectionPolicy, OnePolicy, OrderPolicy, ProblemSpec, TimingSpec};
-use crate::task::values::{Corners, LengthOrAny, Number, OneOrMore, OnlyTable, RegionNumbers, XY};
+use crate::task::spec::{
+    ClosingPolicy, DirectionPolicy, Limits, OnePolicy, OrderPolicy, ProblemSpec, TimingSpec,
+};
+use crate::task::values::{Bounds, Corners, LengthOrAny, Number, OneOrMore, OnlyTable, RegionNumbers, XY};
 use crate::task::{Defect, Problem};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -44,6 +48,8 @@ use serde::{Deserialize, Serialize};
 pub enum RequirementKind {
     /// The key `require.type`.
     Type,
+    /// The key `require.input`.
+    Input,
     /// The key `require.transmission_deg_min`.
     Transmission,
     /// The key `require.link_ratio_max`.
@@ -60,6 +66,10 @@ pub enum RequirementKind {
     ExtentMax,
     /// The key `require.longest_max`.
     LongestMax,
+    /// The key `require.stroke`.
+    Stroke,
+    /// The key `require.time_ratio`.
+    TimeRatio,
     /// The key `require.direction`.
     Direction,
     /// The key `require.order`.
@@ -78,7 +88,7 @@ pub enum RequirementKind {
 
 impl RequirementKind {
     /// Every kind, in the order in which conflicts name them and relaxations try them.
-    pub const IN_CONFLICTS: [RequirementKind; 16] = [
+    pub const IN_CONFLICTS: [RequirementKind; 19] = [
         Self::Transmission,
         Self::PivotsIn,
         Self::PivotOn,
@@ -89,7 +99,10 @@ impl RequirementKind {
         Self::LinkRatio,
         Self::Tolerance,
         Self::ToleranceDeg,
+        Self::Stroke,
+        Self::TimeRatio,
         Self::Type,
+        Self::Input,
         Self::Order,
         Self::Direction,
         Self::Circuit,
@@ -115,6 +128,12 @@ impl RequirementKind {
         name == Self::PivotOn.name()
     }
 
+    /// Returns whether a requirement of this name in a record holds a value at its limit: pivots on lines, a stroke, a time
+    /// ratio.
+    pub fn names_equality(name: &str) -> bool {
+        Self::names_line(name) || [Self::Stroke, Self::TimeRatio].iter().any(|kind| kind.name() == name)
+    }
+
     /// Returns its key in the file of a problem: a tolerance is one of its task's table.
     pub fn key_in(self, spec: &ProblemSpec) -> String {
         match self {
@@ -124,7 +143,7 @@ impl RequirementKind {
     }
 
     /// Returns every kind, in the order of a record.
-    pub fn all() -> [RequirementKind; 16] {
+    pub fn all() -> [RequirementKind; 19] {
         let mut kinds = Self::IN_CONFLICTS;
         kinds.sort_unstable();
         kinds
@@ -134,6 +153,7 @@ impl RequirementKind {
     pub fn definition(self) -> &'static Definition {
         match self {
             Self::Type => &linkage_type::TYPE,
+            Self::Input => &input::INPUT,
             Self::Transmission => &transmission::TRANSMISSION,
             Self::LinkRatio => &link_ratio::LINK_RATIO,
             Self::PivotsIn => &pivots_in::PIVOTS_IN,
@@ -142,6 +162,8 @@ impl RequirementKind {
             Self::FootprintIn => &footprint_in::FOOTPRINT_IN,
             Self::ExtentMax => &extent_max::EXTENT_MAX,
             Self::LongestMax => &longest_max::LONGEST_MAX,
+            Self::Stroke => &stroke::STROKE,
+            Self::TimeRatio => &stroke::TIME_RATIO,
             Self::Direction => &direction::DIRECTION,
             Self::Order => &order::ORDER,
             Self::Branch => &branch::BRANCH,
@@ -161,7 +183,7 @@ impl RequirementKind {
     pub fn with_key(key: &str) -> Option<RequirementKind> {
         let found = Self::IN_CONFLICTS.into_iter().find(|kind| kind.definition().key == key);
         found.or(match key {
-            "task.motion.tolerance" => Some(Self::Tolerance),
+            "task.motion.tolerance" | "task.function.tolerance" => Some(Self::Tolerance),
             "task.function.tolerance_deg" => Some(Self::ToleranceDeg),
             _ => None,
         })
@@ -273,6 +295,24 @@ impl Refusal {
     }
 }
 
+/// The rule for the range of the input.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum InputPolicy {
+    /// The crank may rock.
+    #[default]
+    Any,
+    /// The crank turns fully.
+    FullTurn,
+}
+
+impl InputPolicy {
+    /// Returns whether the crank may rock.
+    pub fn is_any(&self) -> bool {
+        *self == InputPolicy::Any
+    }
+}
+
 /// The requirements on a linkage.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -281,6 +321,9 @@ pub(crate) struct RawRequire {
     /// The types allowed; where silent, any.
     #[serde(rename = "type")]
     pub types: Option<OneOrMore<LinkageType>>,
+    /// "full-turn": the crank turns fully, whatever the kind of linkage; where silent, any.
+    #[serde(default)]
+    pub input: InputPolicy,
     /// The least transmission angle allowed, min(mu, 180 - mu), 0 to 90 degrees; where silent, any.
     pub transmission_deg_min: Option<Number>,
     /// The motion over which it is judged; where silent, the cycle where the crank turns fully.
@@ -301,6 +344,11 @@ pub(crate) struct RawRequire {
     /// The greatest length of the longest of ground, a, b, c, d and e; "any" for no limit. Where silent, 3 sizes of a
     /// target with free timing, unless `[design]` bounds a length, extent_max is given or the pivots lie too far out; else any.
     pub longest_max: Option<LengthOrAny>,
+    /// The distance between the ends of a slider-crank's slider: a length, or [least, greatest]. The crank turns fully.
+    pub stroke: Option<Bounds>,
+    /// The crank's angle for the slower way of the slider over that for the quicker one, 1 or more: a number, or [least,
+    /// greatest]. The crank turns fully. With stroke, both as numbers, `[task.function]` needs no pairs: they are the ends.
+    pub time_ratio: Option<Bounds>,
     /// Whether the points must be passed in order.
     #[serde(default)]
     pub order: OrderPolicy,
@@ -324,6 +372,9 @@ pub struct RequireSpec {
     /// The types allowed; empty: any.
     #[serde(rename = "type")]
     pub types: Vec<LinkageType>,
+    /// Whether the crank must turn fully; absent: it need not.
+    #[serde(default, skip_serializing_if = "InputPolicy::is_any")]
+    pub input: InputPolicy,
     /// The least of min(mu, 180 - mu) over the motion, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub transmission_deg_min: Option<f64>,
@@ -350,6 +401,12 @@ pub struct RequireSpec {
     /// The greatest length of the longest of ground, a, b, c, d and e; absent: any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest_max: Option<f64>,
+    /// The bounds of the distance between the ends of a slider-crank's slider; absent: any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stroke: Option<Limits>,
+    /// The bounds of the crank's angle for the slower way of the slider over that for the quicker one; absent: any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_ratio: Option<Limits>,
     /// Whether the points must be passed in order.
     pub order: OrderPolicy,
     /// The direction in which the crank turns.
@@ -365,6 +422,17 @@ pub struct RequireSpec {
 }
 
 impl RequireSpec {
+    /// Returns whether nothing but a crank that turns fully is accepted.
+    pub fn asks_full_turn(&self) -> bool {
+        self.input == InputPolicy::FullTurn || self.stroke.is_some() || self.time_ratio.is_some()
+    }
+
+    /// Returns the stroke and the time ratio, if both are asked for as numbers.
+    pub fn ends(&self) -> Option<[f64; 2]> {
+        let fixed = |limits: Option<Limits>| limits.filter(Limits::is_fixed).map(|limits| limits.0);
+        Some([fixed(self.stroke)?, fixed(self.time_ratio)?])
+    }
+
     /// Returns whether a defect is disallowed.
     pub fn forbids(&self, defect: &Defect) -> bool {
         match defect {
@@ -398,6 +466,7 @@ impl From<RawRequire> for RequireSpec {
         types.dedup();
         RequireSpec {
             types,
+            input: raw.input,
             transmission_deg_min: number(raw.transmission_deg_min),
             transmission_over: raw.transmission_over,
             link_ratio_max: number(raw.link_ratio_max).unwrap_or(DEFAULT_LINK_RATIO),
@@ -407,6 +476,8 @@ impl From<RawRequire> for RequireSpec {
             footprint_in: corners(raw.footprint_in),
             extent_max: number(raw.extent_max),
             longest_max: raw.longest_max.and_then(LengthOrAny::length),
+            stroke: raw.stroke.map(|bounds| bounds.0),
+            time_ratio: raw.time_ratio.map(|bounds| bounds.0),
             order: raw.order,
             direction: raw.direction,
             circuit: raw.circuit,

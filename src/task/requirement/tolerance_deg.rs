@@ -22,8 +22,9 @@ pub(super) const TOLERANCE_DEG: Definition = Definition {
     ..Definition::DEFAULT
 };
 
+/// Returns the angles wanted; none of a function of places.
 fn body(spec: &ProblemSpec) -> Option<&BodySpec> {
-    spec.task.body.as_ref()
+    spec.task.body.as_ref().filter(|_| !spec.task.is_of_places())
 }
 
 /// Returns the tolerance that every pose has.

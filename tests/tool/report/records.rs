@@ -90,6 +90,7 @@ pub fn candidate(
         frame_deg: error.angle.as_ref().map(|angle| angle.frame.to_degrees()),
         input_offset_deg: None,
         output_offset_deg: None,
+        output_offset: None,
         input_range_deg: None,
         output_range_deg: None,
         sense: None,

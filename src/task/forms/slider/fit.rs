@@ -25,6 +25,7 @@
 //! ```
 
 use super::limits::Limited;
+use super::output::Outputs;
 use super::shape::{Closure, FRAME, Miss, OFFSET, SHAPE, SliderShape, UNKNOWNS, Unknowns};
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::{ways_round, wrapped};
@@ -65,18 +66,22 @@ impl BodyAngles {
     }
 }
 
-/// A path or a motion and the limits of a kind of linkage, in units of the target's size around its centre; R rows a target,
-/// 2 of a path and 3 of a motion.
+/// A path, a motion or a function and the limits of a kind of linkage, in units of the target's size around its centre; R rows
+/// a target, 2 of a path, 3 of a motion and 1 of a function.
 #[derive(Clone, Debug)]
 pub struct SliderFit<'a, const R: usize> {
     /// The kind.
     pub kind: LoopKind,
-    /// The points.
+    /// The points; none of a function.
     pub points: &'a [Complex],
     /// Their weights.
     pub weights: &'a [f64],
     /// The angles of a motion's body.
     pub body: Option<&'a BodyAngles>,
+    /// The outputs of a function.
+    pub outputs: Option<&'a Outputs>,
+    /// The sign in which a function's outputs count.
+    pub sign: f64,
     /// The crank angles.
     pub angles: Angles,
     /// The limits.
@@ -108,6 +113,14 @@ impl<const R: usize> SliderFit<'_, R> {
 
     fn forward(&self) -> f64 {
         if self.sense < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// Returns the reference of prescribed crank angles.
+    pub(super) fn offset(&self) -> AngleOffset {
+        match &self.angles {
+            Angles::Free => AngleOffset::Free,
+            Angles::Prescribed(_, offset, _) => *offset,
+        }
     }
 
     fn is_free(&self) -> bool {
@@ -168,7 +181,7 @@ fn base_angle(x: &Unknowns, shape: &SliderShape, offset: AngleOffset) -> f64 {
 }
 
 /// Adds the derivatives of something that changes by `by` with the crank's angle.
-fn add_turn(gradient: &mut [f64; UNKNOWNS], by: f64, shape: &SliderShape, offset: AngleOffset) {
+pub(super) fn add_turn(gradient: &mut [f64; UNKNOWNS], by: f64, shape: &SliderShape, offset: AngleOffset) {
     match (offset, shape.closure) {
         (AngleOffset::Free, _) => gradient[OFFSET] += by,
         (AngleOffset::Fixed, _) => {}
@@ -239,7 +252,7 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
     type State = Positions;
 
     fn points(&self) -> usize {
-        self.points.len()
+        self.weights.len()
     }
 
     fn bounds(&self) -> &[(f64, f64); UNKNOWNS] {
@@ -248,7 +261,10 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
 
     fn cost(&self, x: &Unknowns, state: &Positions) -> Option<f64> {
         let shape = SliderShape::of(self.kind, x)?;
-        computed(self.points.len());
+        computed(self.weights.len());
+        if let Some(outputs) = self.outputs {
+            return self.cost_of_outputs(outputs, x, &shape);
+        }
         let given = if self.is_free() { None } else { Some(self.prescribed(x, &shape)?) };
         let state = given.as_ref().unwrap_or(state);
         let each = state.iter().zip(self.points).zip(self.weights);
@@ -269,7 +285,10 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
         each: &mut dyn FnMut(&PointBlock<UNKNOWNS, R>),
     ) -> bool {
         let Some(shape) = SliderShape::of(self.kind, x) else { return false };
-        computed(self.points.len());
+        computed(self.weights.len());
+        if let Some(outputs) = self.outputs {
+            return self.linearise_outputs(outputs, x, &shape, each);
+        }
         let given = match &self.angles {
             Angles::Free => None,
             Angles::Prescribed(..) => match self.prescribed(x, &shape) {
@@ -380,7 +399,7 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
         let Some(shape) = SliderShape::of(self.kind, x) else { return };
         let given = if self.is_free() { None } else { self.prescribed(x, &shape) };
         let at = given.as_ref().unwrap_or(state);
-        self.limits.each(&shape, x[FRAME], at, self.points.len(), &mut |bar| {
+        self.limits.each(&shape, x[FRAME], at, self.weights.len(), &mut |bar| {
             each(bar.value, &|| self.row(&bar, &shape, at));
         });
     }

@@ -10,11 +10,12 @@
 //! Otherwise the same at each point: k b -+ (Im(C conj s) - q) >= 0, k |B - C| -+ h >= 0; and where one branch is required,
 //! t1 <u, s> b >= 0 or t1 <B - C, u> >= 0 there.
 
+use super::ends;
 use super::regions::Regions;
 use super::shape::{Closure, FRAME, OFFSET, SHAPE, SliderShape, UNKNOWNS};
 use crate::mechanism::{AssemblyMode, Complex, LoopKind, cross, dot, turned};
 use crate::task::spec::{DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, Limits, TransmissionOver};
-use crate::task::{Link, Problem, region::Region};
+use crate::task::{Problem, region::Region};
 use std::f64::consts::PI;
 
 /// The margin, in sizes of the target, inside a limit at which a fit aims.
@@ -53,6 +54,9 @@ pub struct Limited {
     cosine: Option<f64>,
     /// Whether it is asked for over the motion used, whatever the crank does.
     over_used: bool,
+    /// The bounds of the stroke and of the time ratio of a slider-crank.
+    stroke: Option<[f64; 2]>,
+    time_ratio: Option<[f64; 2]>,
     link_ratio: Option<f64>,
     longest: Option<f64>,
     /// Whether the motion is to stay on one branch.
@@ -110,16 +114,25 @@ impl Limited {
         if !problem.offset_is_free() {
             bounds[OFFSET] = (0.0, 0.0);
         }
-        if !problem.task().body().is_some_and(|body| matches!(body.link, Link::Coupler)) {
+        if problem.task().body().is_none_or(|body| body.given_frame(0.0).is_some()) {
             bounds[FRAME] = (0.0, 0.0);
         }
-        let must_turn = problem.has_to_turn_on();
+        if problem.is_function() {
+            // The coupler carries no point.
+            (bounds[6], bounds[7]) = ((0.0, 0.0), (0.0, 0.0));
+        }
+        let must_turn = problem.has_to_turn();
         Limited {
             bounds,
             turns: must_turn,
             must_turn,
             cosine: require.transmission_deg_min.map(|deg| deg.to_radians().cos()),
             over_used: require.transmission_over == Some(TransmissionOver::Used),
+            stroke: require
+                .stroke
+                .filter(|_| kind == LoopKind::SliderCrank)
+                .map(|limits| [limits.0 / size, limits.1 / size]),
+            time_ratio: require.time_ratio.filter(|_| kind == LoopKind::SliderCrank).map(|l| [l.0, l.1]),
             link_ratio: Some(require.link_ratio_max).filter(|ratio| ratio.is_finite()),
             longest,
             one_branch: !problem.branch_any(),
@@ -162,6 +175,9 @@ impl Limited {
         let of_turn = self.cosine.filter(|_| self.turns && !self.over_used);
         if self.turns {
             full_turn(shape, of_turn.unwrap_or(1.0), each);
+        }
+        if self.stroke.is_some() || self.time_ratio.is_some() {
+            ends::each(shape, self.stroke, self.time_ratio, each);
         }
         if let Some(cosine) = self.cosine.filter(|_| of_turn.is_none()) {
             for j in 0..points {

@@ -2,13 +2,14 @@
 
 use super::fit::{Angles, BodyAngles, SliderFit};
 use super::limits::Limited;
+use super::output::Outputs;
 use super::shape::{SliderShape, Unknowns};
 use crate::mechanism::{AssemblyMode, Complex, LoopKind};
 use crate::numbers::arithmetic::streams::{stream, uniform};
 use crate::numbers::optimise::levenberg_marquardt::derivative_error;
 use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, Limits, RequireSpec};
-use crate::task::{AngleOffset, Problem};
+use crate::task::{AngleOffset, Output, Problem};
 
 /// Draws a linkage that closes for cranks within half a radian of the x axis, as unknowns.
 fn drawn(kind: LoopKind, case: u64) -> (Unknowns, SliderShape) {
@@ -91,6 +92,8 @@ fn derivatives_agree_with_differences() {
                     points: &points,
                     weights: &weights,
                     body: None,
+                    outputs: None,
+                    sign: 1.0,
                     angles: angles.clone(),
                     limits: &limits,
                     sense: 1.0,
@@ -101,11 +104,37 @@ fn derivatives_agree_with_differences() {
                     points: &points,
                     weights: &weights,
                     body: Some(&body),
-                    angles,
+                    outputs: None,
+                    sign: 1.0,
+                    angles: angles.clone(),
                     limits: &limits,
                     sense: 1.0,
                     ends_meet: false,
                 };
+                let is_angle = kind == LoopKind::InvertedSliderCrank && case % 4 < 2;
+                let outputs = Outputs {
+                    kind: if is_angle { Output::Angle } else { Output::Place },
+                    wanted: (0..6).map(|j| 0.3 * f64::from(j)).collect(),
+                    weight: 0.9,
+                    from_ground: case % 2 == 0,
+                };
+                let function = SliderFit::<1> {
+                    kind,
+                    points: &[],
+                    weights: &weights,
+                    body: None,
+                    outputs: Some(&outputs),
+                    sign,
+                    angles,
+                    limits: &limits,
+                    sense: 0.0,
+                    ends_meet: false,
+                };
+                if !is_free
+                    && let Some(error) = derivative_error(&function, &turned, &state, &[1e-6; 10], 0.0)
+                {
+                    assert!(error < 2e-8, "{kind} {case} {:?} {offset:?}: {error}", outputs.kind);
+                }
                 let along = if is_free { 1e-6 } else { 0.0 };
                 let errors = [
                     derivative_error(&path, &turned, &state, &[1e-6; 10], along),

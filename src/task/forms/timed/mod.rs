@@ -27,7 +27,7 @@ use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
 };
 use crate::task::ranges::Scales;
-use crate::task::{AngleOffset, Body, Problem, Setting, Timing, best_frame};
+use crate::task::{AngleOffset, Body, Problem, Setting, Timing};
 use std::f64::consts::TAU;
 
 /// Computes the gradient of the ground line's direction by Ax, Ay, Bx and By.
@@ -135,7 +135,7 @@ impl<'a, const N: usize, const R: usize> TimedFit<'a, N, R> {
             Some(sign * scales[1] * (*angle)? - body.line(joints).arg())
         };
         let apart: Vec<Option<f64>> = body.angles.iter().enumerate().map(apart).collect();
-        Some(best_frame(&apart, self.problem.task().weights())).filter(|frame| frame.is_finite())
+        Some(body.best_frame(&apart, self.problem.task().weights())).filter(|frame| frame.is_finite())
     }
 
     /// Returns the angle added to every prescribed one.
