@@ -36,7 +36,21 @@ from ._doors import (
     suite,
     verify,
 )
-from ._linkwright import Chain, FourBar, InternalError, Positions, Problem, ProblemError, Rates, __version__, load
+from ._linkwright import (
+    Chain,
+    FourBar,
+    InternalError,
+    Positions,
+    Problem,
+    ProblemError,
+    Rates,
+    SliderLinkage,
+    SliderRates,
+    __version__,
+    inverted_slider_crank,
+    load,
+    slider_crank,
+)
 from ._problems import function, load_problem, motion, path
 from ._result import Candidate, Front, Result, front, open, synth
 
@@ -54,6 +68,8 @@ __all__ = [
     "ProblemError",
     "Rates",
     "Result",
+    "SliderLinkage",
+    "SliderRates",
     "Suite",
     "Verification",
     "__version__",
@@ -66,12 +82,14 @@ __all__ = [
     "formats",
     "front",
     "function",
+    "inverted_slider_crank",
     "load",
     "load_problem",
     "motion",
     "open",
     "path",
     "schema",
+    "slider_crank",
     "snap",
     "suite",
     "synth",

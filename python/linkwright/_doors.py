@@ -223,9 +223,11 @@ def as_four_bar(linkage: Any) -> FourBar:
     """Returns the four-bar of an argument."""
     subject, which = _split(linkage)
     if isinstance(subject, _linkwright.Run):
-        return subject.linkage(which or "1")
+        return as_four_bar(subject.linkage(which or "1"))
     if isinstance(subject, _linkwright.FourBar):
         return subject
+    if isinstance(subject, _linkwright.SliderLinkage):
+        raise _linkwright.ProblemError(f"a {subject.kind} is not a four-bar, and a four-bar is needed here")
     if isinstance(subject, _linkwright.Chain):
         raise _linkwright.ProblemError("a chain is not a four-bar, and a four-bar is needed here")
     loaded = _linkwright.load(subject)

@@ -112,7 +112,7 @@ class Positions:
         """The crank pin."""
     @property
     def D(self) -> _Array:
-        """The follower pin."""
+        """The follower pin, or the slider's."""
     @property
     def P(self) -> _Array:
         """The coupler point."""
@@ -235,7 +235,131 @@ class FourBar:
         """Returns the other linkages of the same coupler curve."""
     def __eq__(self, value: object, /) -> bool: ...
     def __hash__(self) -> int: ...
-    def __reduce__(self) -> tuple[Callable[[str], FourBar | Chain], tuple[str]]: ...
+    def __reduce__(self) -> tuple[Callable[[str], FourBar | SliderLinkage | Chain], tuple[str]]: ...
+
+@final
+class SliderRates:
+    """Velocities or accelerations of a linkage with a slider; NaN where the loop does not close and at toggles."""
+
+    @property
+    def C(self) -> _Array:
+        """Of the crank pin: length a second, or a second squared; shape (n, 2)."""
+    @property
+    def D(self) -> _Array:
+        """Of the slider's pin."""
+    @property
+    def P(self) -> _Array:
+        """Of the coupler point."""
+    @property
+    def coupler(self) -> _Array:
+        """Of the coupler: rad/s, or rad/s^2; shape (n,)."""
+    @property
+    def slider(self) -> _Array:
+        """Of the slider along its line, or of the block along the coupler; shape (n,)."""
+
+@final
+class SliderLinkage:
+    """A linkage with a slider: a slider-crank or an inverted slider-crank.
+
+    A: fixed pivot of the crank, a = |AC|; P = C + (coupler_x + i coupler_y) u, u the coupler's direction. Of a slider-crank D
+    slides along the line through line_point at line_deg, b = |CD|; of an inverted one the coupler slides through a block that
+    turns about B, which lies `offset` to the left of the coupler's line through C, and D is the foot of B on that line.
+    Results give them, and :func:`linkwright.load` reads them; :func:`linkwright.slider_crank` and
+    :func:`linkwright.inverted_slider_crank` make them.
+    """
+
+    @property
+    def kind(self) -> str:
+        """slider-crank or inverted-slider-crank."""
+    @property
+    def name(self) -> str:
+        """The name."""
+    @property
+    def unit(self) -> str | None:
+        """The unit of its lengths: mm, cm, m or in."""
+    @property
+    def A(self) -> tuple[float, float]:
+        """The fixed pivot of the crank."""
+    @property
+    def B(self) -> tuple[float, float] | None:
+        """The fixed pivot of the block; None of a slider-crank."""
+    @property
+    def a(self) -> float:
+        """|AC|, the crank."""
+    @property
+    def b(self) -> float | None:
+        """|CD|, the coupler; None of an inverted slider-crank."""
+    @property
+    def offset(self) -> float | None:
+        """The distance of B to the left of the coupler's line; None of a slider-crank."""
+    @property
+    def line_point(self) -> tuple[float, float] | None:
+        """A point of the slider's line; None of an inverted slider-crank."""
+    @property
+    def line_deg(self) -> float | None:
+        """The direction of the slider's line, degrees; None of an inverted slider-crank."""
+    @property
+    def coupler_x(self) -> float:
+        """P along the coupler from C."""
+    @property
+    def coupler_y(self) -> float:
+        """P to the left of the coupler."""
+    @property
+    def t1(self) -> int:
+        """1: D is the further of its two places along the line, or the block is ahead of C; -1: the other."""
+    @property
+    def link_ratio(self) -> float:
+        """The longest over the shortest of a and b, or of a and |AB|."""
+    @property
+    def mobility(self) -> dict[str, Any]:
+        """Whether the crank turns fully (input_turns_fully), and where it can stand (input_arcs_deg)."""
+    def positions(self, phi: ArrayLike) -> Positions:
+        """Computes the position at crank angles (radians from the x axis, any shape)."""
+    def places(self, phi: ArrayLike) -> _Array:
+        """Computes the slider's place at crank angles: along its line from the foot of the perpendicular from A, or of the block
+        along the coupler from C; NaN where the loop does not close."""
+    def velocities(self, phi: ArrayLike, omega: float = 1.0) -> SliderRates:
+        """Computes velocities at crank angles, for a crank speed in rad/s."""
+    def accelerations(self, phi: ArrayLike, omega: float = 1.0, alpha: float = 0.0) -> SliderRates:
+        """Computes accelerations at crank angles, for a crank's speed (rad/s) and acceleration (rad/s^2)."""
+    def transmission_deg(self, phi: ArrayLike) -> _Array:
+        """Computes the transmission angle at crank angles, degrees; NaN where the loop does not close."""
+    def coupler_curve(self, at: float = 0.0, samples: int = 720) -> _Array:
+        """Samples the coupler curve of the circuit that holds the position at the crank angle `at`; shape (m, 2)."""
+    def to_toml(self) -> str:
+        """Returns the text of its linkage file."""
+    def __eq__(self, value: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __reduce__(self) -> tuple[Callable[[str], FourBar | SliderLinkage | Chain], tuple[str]]: ...
+
+def slider_crank(
+    A: tuple[float, float] | Sequence[float],
+    a: float,
+    b: float,
+    line_point: tuple[float, float] | Sequence[float],
+    line_deg: float,
+    coupler_x: float | None = None,
+    coupler_y: float = 0.0,
+    t1: int = 1,
+    *,
+    name: str = "linkage",
+    unit: str | None = None,
+) -> SliderLinkage:
+    """Makes a slider-crank."""
+
+def inverted_slider_crank(
+    A: tuple[float, float] | Sequence[float],
+    B: tuple[float, float] | Sequence[float],
+    a: float,
+    offset: float = 0.0,
+    coupler_x: float = 0.0,
+    coupler_y: float = 0.0,
+    t1: int = 1,
+    *,
+    name: str = "linkage",
+    unit: str | None = None,
+) -> SliderLinkage:
+    """Makes an inverted slider-crank."""
 
 @final
 class Chain:
@@ -264,7 +388,7 @@ class Chain:
         """Computes the acceleration of every point."""
     def to_toml(self) -> str:
         """Returns the text of its linkage file."""
-    def __reduce__(self) -> tuple[Callable[[str], FourBar | Chain], tuple[str]]: ...
+    def __reduce__(self) -> tuple[Callable[[str], FourBar | SliderLinkage | Chain], tuple[str]]: ...
 
 @final
 class Run:
@@ -282,7 +406,7 @@ class Run:
     @property
     def timing(self) -> dict[str, Any] | None: ...
     def record_json(self) -> bytes: ...
-    def linkage(self, which: str) -> FourBar: ...
+    def linkage(self, which: str) -> FourBar | SliderLinkage: ...
     def svg(self, which: str) -> str: ...
     def text(self) -> str: ...
     def summary_html(self) -> str: ...
@@ -293,7 +417,7 @@ class Run:
     def save(self, folder: _Path) -> None: ...
     def __reduce__(self) -> tuple[Callable[[bytes], Run], tuple[bytes]]: ...
 
-def load(path: _Path) -> FourBar | Chain:
+def load(path: _Path) -> FourBar | SliderLinkage | Chain:
     """Reads the linkage of a file: a four-bar or a chain.
 
     Raises ProblemError: the file is refused; the text names the line, the fault and the remedy.
@@ -310,7 +434,7 @@ def synth(
 ) -> Run: ...
 def open(path: _Path) -> Run: ...
 def parse_run(text: bytes) -> Run: ...
-def parse_linkage(text: str) -> FourBar | Chain: ...
+def parse_linkage(text: str) -> FourBar | SliderLinkage | Chain: ...
 def verify(result: Run, certificate: bool = False, leaves: bool = False) -> dict[str, Any]: ...
 def certify(
     result: Run,

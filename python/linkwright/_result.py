@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
     import pandas
 
-    from ._linkwright import FourBar, Problem
+    from ._linkwright import FourBar, Problem, SliderLinkage
 
     Progress = Union[bool, Callable[[dict[str, Any]], object], None]
 
@@ -54,7 +54,7 @@ class Candidate:
         return [*super().__dir__(), *self.data]
 
     @property
-    def linkage(self) -> FourBar:
+    def linkage(self) -> FourBar | SliderLinkage:
         """The linkage, which can be moved."""
         return self.result._run.linkage(self.which)
 

@@ -49,14 +49,23 @@ def _axes(ax: Any) -> Any:
 
 
 def _target(candidate: Candidate) -> Any:
-    """The places of the targets, shape (n, 2); those of the follower's pin in a function."""
+    """The places of the targets, shape (n, 2); those of the follower's or the slider's pin in a function."""
     import numpy as np
 
     task = candidate.result.record["problem"]["resolved"]["task"]
     if "function" in task:
-        linkage = candidate.linkage
-        (ax, ay), (bx, by) = linkage.A, linkage.B
+        linkage: Any = candidate.linkage
         sign = -1 if candidate.sense == "opposite" else 1
+        if candidate.data["linkage"].get("kind") == "slider-crank":
+            along = np.radians(linkage.line_deg)
+            s = np.array([np.cos(along), np.sin(along)])
+            pivot, point = np.array(linkage.A), np.array(linkage.line_point)
+            foot = point + s * np.dot(pivot - point, s)
+            places = sign * (candidate.output_offset + np.asarray(task["function"]["output"], dtype=float))
+            return foot + places[:, None] * s
+        if "kind" in candidate.data["linkage"]:
+            return np.empty((0, 2))
+        (ax, ay), (bx, by) = linkage.A, linkage.B
         ground = np.degrees(np.arctan2(by - ay, bx - ax))
         outputs = np.asarray(task["function"]["output_deg"], dtype=float)
         # Where the range is free, the task says proportions alone.
@@ -96,14 +105,26 @@ def _links(ax: Any, linkage: Any, angle: float) -> list[Any]:
     style = {"color": _LINKS, "linewidth": 2.0, "solid_capstyle": "round", "zorder": 2}
     moving = ax.plot([], [], "-o", markersize=4, **style)[0]
     plate = ax.fill([0, 0, 0], [0, 0, 0], color=_LINKS, alpha=0.15, zorder=1)[0]
-    ax.plot(*zip(linkage.A, linkage.B), "^", color="black", markersize=7, zorder=4)
+    pivots = [linkage.A] if linkage.B is None else [linkage.A, linkage.B]
+    ax.plot(*zip(*pivots), "^", color="black", markersize=7, zorder=4)
+    if hasattr(linkage, "line_point") and linkage.line_point is not None:
+        ax.axline(linkage.line_point, slope=_slope(linkage.line_deg), color="black", linewidth=0.8, zorder=1)
     _pose(moving, plate, linkage, angle)
     return [moving, plate]
 
 
+def _slope(deg: float) -> float:
+    import math
+
+    upright = abs(math.cos(math.radians(deg))) < 1e-12
+    return math.inf if upright else math.tan(math.radians(deg))
+
+
 def _pose(moving: Any, plate: Any, linkage: Any, angle: float) -> None:
     at = linkage.positions(angle)
-    joints = [linkage.A, tuple(at.C), tuple(at.D), linkage.B]
+    joints = [linkage.A, tuple(at.C), tuple(at.D)]
+    if linkage.B is not None:
+        joints.append(linkage.B)
     moving.set_data([x for x, _ in joints], [y for _, y in joints])
     plate.set_xy([tuple(at.C), tuple(at.P), tuple(at.D)])
 

@@ -3,7 +3,7 @@
 use linkwright::internals::app::inputs::Given;
 use linkwright::internals::judge::practicality::clearance::Build;
 use linkwright::internals::judge::practicality::sensitivity::Dimension;
-use linkwright::internals::judge::practicality::{Closest, Practicality, usual_tolerance};
+use linkwright::internals::judge::practicality::{Closest, Practicality, Sweep, usual_tolerance};
 use linkwright::internals::mechanism::OneLoop;
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::practicality::practicality_text;
@@ -20,14 +20,18 @@ pub fn built(
     margin: Option<f64>,
     tolerance: Option<f64>,
 ) -> Result<(Value, String), String> {
-    let made = |linkage: OneLoop, unit: Option<Unit>| {
-        let hole = hole.unwrap_or_else(|| Build::usual_hole(linkage, unit));
-        Build::new(hole, margin.unwrap_or(hole))
+    let made = |title: &str, sweep: Option<Sweep>, unit: Option<Unit>| {
+        let sweep = sweep.ok_or_else(|| nothing(title))?;
+        let no_room =
+            || format!("{title}: the slot of its block leaves no room for a hole, so there are no plates");
+        let hole = hole.or_else(|| Build::usual_hole_of(&sweep, unit)).ok_or_else(no_room)?;
+        Ok::<Build, String>(Build::new(hole, margin.unwrap_or(hole)))
     };
     let (title, linkage, unit, found) = match given {
         Given::Linkage(file) => {
             let linkage = OneLoop::from(file.linkage);
-            let found = Practicality::of_linkage(linkage, made(linkage, file.unit));
+            let build = made(&file.name, Sweep::of_linkage(linkage), file.unit)?;
+            let found = Practicality::of_linkage(linkage, build);
             (file.name.clone(), linkage, file.unit, found)
         }
         Given::Run(run) => {
@@ -35,14 +39,20 @@ pub fn built(
             let problem = Problem::new(run.record.problem.resolved.clone()).map_err(|e| e.to_string())?;
             let unit = run.record.problem.unit;
             let linkage = chosen.candidate.linkage;
-            let found = Practicality::of_candidate(&problem, chosen.candidate, made(linkage, unit));
+            let build = made(&chosen.label, Sweep::of_candidate(&problem, chosen.candidate), unit)?;
+            let found = Practicality::of_candidate(&problem, chosen.candidate, build);
             (chosen.label.clone(), linkage, unit, found)
         }
     };
-    let found = found.ok_or_else(|| format!("{title} cannot be assembled, so there is nothing to build"))?;
+    let found = found.ok_or_else(|| nothing(&title))?;
     let tolerance = tolerance.unwrap_or_else(|| usual_tolerance(linkage, unit));
     let text = practicality_text(&found, unit, tolerance, Colour::Never);
     Ok((figures(&found, tolerance), text))
+}
+
+/// Returns the refusal of a linkage without a position.
+fn nothing(title: &str) -> String {
+    format!("{title} cannot be assembled, so there is nothing to build")
 }
 
 fn figures(found: &Practicality, tolerance: f64) -> Value {

@@ -5,6 +5,7 @@ use crate::errors::{guarded, refused};
 use crate::linkage::FourBar;
 use crate::problem::Problem;
 use crate::run::Run;
+use crate::slider::SliderLinkage;
 use crate::waiting::{Ended, carrying, run, run_whole};
 use crate::{pools, values};
 use linkwright::internals::app::comparison::{self, NotCompared, Target};
@@ -15,12 +16,12 @@ use linkwright::internals::app::suite::{Options as SuiteOptions, Step, suite as 
 use linkwright::internals::files::linkage_file::{self, AnyLinkageFile, LinkageFile};
 use linkwright::internals::files::name;
 use linkwright::internals::files::schema::{SchemaKind, schema as schema_of};
-use linkwright::internals::mechanism::Linkage;
 use linkwright::internals::mechanism::analysis::driven::{MechanismRequest, analyze_mechanism};
 use linkwright::internals::mechanism::analysis::{
     PositionMethod, Request as Analysis, analyze as analyze_four_bar, full_turn,
 };
 use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
+use linkwright::internals::mechanism::{Linkage, OneLoop};
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::analysis_csv::analysis_csv;
 use linkwright::internals::report::analysis_sheets::analysis_svg;
@@ -53,6 +54,10 @@ pub fn given(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<Given>
     if subject.is_instance_of::<Chain>() {
         return Err(refused("a chain is not a four-bar, and a four-bar is needed here"));
     }
+    if let Ok(linkage) = subject.cast::<SliderLinkage>() {
+        let kind = linkage.get().linkage.kind();
+        return Err(refused(format!("a {kind} is not a four-bar, and a four-bar is needed here")));
+    }
     let path: PathBuf = subject.extract().map_err(|_| unfit(subject))?;
     inputs::read(&path).map_err(refused)
 }
@@ -70,6 +75,10 @@ fn any_linkage(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<AnyL
     if let Ok(linkage) = subject.cast::<FourBar>() {
         let LinkageFile { name, unit, linkage } = linkage.get().file.clone();
         return Ok(LinkageFile { name, unit, linkage: Linkage::FourBar(linkage) });
+    }
+    if let Ok(linkage) = subject.cast::<SliderLinkage>() {
+        let SliderLinkage { name, unit, linkage } = linkage.get().clone();
+        return Ok(LinkageFile { name, unit, linkage: linkage.into() });
     }
     let path: PathBuf = subject.extract().map_err(|_| unfit(subject))?;
     inputs::read_linkage(&path).map_err(refused)
@@ -105,11 +114,13 @@ fn of_file<'py>(py: Python<'py>, file: AnyLinkageFile, text: String) -> PyResult
             Bound::new(py, FourBar { file: LinkageFile { name, unit, linkage } })?.into_any()
         }
         Linkage::Chain(chain) => Bound::new(py, Chain { name, unit, chain: *chain, text })?.into_any(),
-        other @ (Linkage::SliderCrank(_) | Linkage::InvertedSliderCrank(_)) => {
-            return Err(refused(format!(
-                "{name} is {}: analyze takes its file, and no class holds it yet",
-                linkage_file::kind_in_words(&other)
-            )));
+        Linkage::SliderCrank(linkage) => {
+            let linkage = OneLoop::SliderCrank(linkage);
+            Bound::new(py, SliderLinkage { name, unit, linkage })?.into_any()
+        }
+        Linkage::InvertedSliderCrank(linkage) => {
+            let linkage = OneLoop::InvertedSliderCrank(linkage);
+            Bound::new(py, SliderLinkage { name, unit, linkage })?.into_any()
         }
     })
 }

@@ -14,6 +14,7 @@
 //! | [`problem`] | the class of problems |
 //! | [`proving`] | proofs: verify and certify |
 //! | [`run`] | the class of runs; synth, front and opening |
+//! | [`slider`] | slider-cranks and inverted slider-cranks at many crank angles |
 //! | [`sweeping`] | sweeps: plan, run, merge |
 //! | [`timing`] | the library's own times, for the benchmark |
 //! | [`values`] | values of Python as those of a problem file, and JSON as values of Python |
@@ -30,6 +31,7 @@ mod pools;
 mod problem;
 mod proving;
 mod run;
+mod slider;
 mod sweeping;
 mod timing;
 mod values;
@@ -50,6 +52,10 @@ fn _linkwright(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<linkage::Positions>()?;
     module.add_class::<linkage::Rates>()?;
     module.add_class::<chain::Chain>()?;
+    module.add_class::<slider::SliderLinkage>()?;
+    module.add_class::<slider::SliderRates>()?;
+    module.add_function(wrap_pyfunction!(slider::slider_crank, module)?)?;
+    module.add_function(wrap_pyfunction!(slider::inverted_slider_crank, module)?)?;
     module.add_function(wrap_pyfunction!(run::synth, module)?)?;
     module.add_function(wrap_pyfunction!(run::open, module)?)?;
     module.add_function(wrap_pyfunction!(run::parse_run, module)?)?;

@@ -42,12 +42,19 @@ pub struct Positions {
     /// The crank pin.
     #[pyo3(get, name = "C")]
     crank_pin: Py<PyArrayDyn<f64>>,
-    /// The follower pin.
+    /// The follower pin, or the slider's.
     #[pyo3(get, name = "D")]
     follower_pin: Py<PyArrayDyn<f64>>,
     /// The coupler point.
     #[pyo3(get, name = "P")]
     coupler_point: Py<PyArrayDyn<f64>>,
+}
+
+impl Positions {
+    /// Returns the positions in columns of C, D and P.
+    pub fn of([crank_pin, follower_pin, coupler_point]: [Py<PyArrayDyn<f64>>; 3]) -> Self {
+        Positions { crank_pin, follower_pin, coupler_point }
+    }
 }
 
 /// Velocities or accelerations; NaN where the loop does not close and at toggles.
@@ -281,8 +288,7 @@ impl FourBar {
                 let linkage = self.file.linkage;
                 py.detach(|| linkage.positions(numbers, joints));
             }
-            let [crank_pin, follower_pin, coupler_point] = columns.map(Output::array);
-            Ok(Positions { crank_pin, follower_pin, coupler_point })
+            Ok(Positions::of(columns.map(Output::array)))
         })
     }
 

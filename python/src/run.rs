@@ -3,6 +3,7 @@
 use crate::errors::{bug, guarded, refused};
 use crate::linkage::FourBar;
 use crate::problem::{Problem, overrides};
+use crate::slider::SliderLinkage;
 use crate::waiting::{Ended, Talk, carrying, run};
 use crate::{pools, values};
 use linkwright::internals::app::certificates::{self, Unusable};
@@ -15,6 +16,7 @@ use linkwright::internals::app::job::run::{Context, Finished, Job, prove, run as
 use linkwright::internals::app::job::save::{self, Listener, Options, Ran};
 use linkwright::internals::files::linkage_file::{AnyLinkageFile, LinkageFile};
 use linkwright::internals::judge::certificate;
+use linkwright::internals::mechanism::OneLoop;
 use linkwright::internals::report::html::Shown;
 use linkwright::internals::report::html::{candidate_markup, report_showing, summary_markup};
 use linkwright::internals::report::svg::drawing_svg;
@@ -273,17 +275,16 @@ impl Run {
     }
 
     /// The linkage of a candidate (`"1"`), a pick (`"smallest"`) or a member of the front (`"front-2"`).
-    pub fn linkage(&self, which: &str) -> PyResult<FourBar> {
+    pub fn linkage<'py>(&self, py: Python<'py>, which: &str) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| {
             let (candidate, name) = self.chosen(which)?;
-            let Some(&linkage) = candidate.linkage.four_bar() else {
-                return Err(refused(format!(
-                    "{name} is a {}: analyze takes the result with its number, and no class holds it yet",
-                    candidate.linkage.kind()
-                )));
-            };
-            let file = LinkageFile { name, unit: self.record.problem.unit, linkage };
-            Ok(FourBar { file })
+            let unit = self.record.problem.unit;
+            Ok(match candidate.linkage {
+                OneLoop::FourBar(linkage) => {
+                    Bound::new(py, FourBar { file: LinkageFile { name, unit, linkage } })?.into_any()
+                }
+                linkage => Bound::new(py, SliderLinkage { name, unit, linkage })?.into_any(),
+            })
         })
     }
 

@@ -240,3 +240,50 @@ def test_a_chain_moves_every_point(root: Path) -> None:
     assert "stages" in repr(chain)
     with pytest.raises(lw.ProblemError, match="a chain is not a four-bar"):
         lw.cognates(chain)  # type: ignore[arg-type]
+
+
+SLIDERS = [
+    lw.slider_crank((0, 0), 1.0, 3.0, (0, 0.4), 10.0, 2.0, 0.5, name="saw", unit="mm"),
+    lw.inverted_slider_crank((0, 0), (3, 0.5), 1.0, 0.3, 4.0, 0.2),
+]
+
+
+@pytest.mark.parametrize("linkage", SLIDERS, ids=lambda linkage: str(linkage.kind))
+def test_a_linkage_with_a_slider_moves_and_reads_back(linkage: lw.SliderLinkage, tmp_path: Path) -> None:
+    at = linkage.positions(ANGLES)
+    crank = at.C - np.array(linkage.A)
+    sure = ~np.isnan(ANGLES)
+    assert np.allclose(np.hypot(*crank[sure].T), linkage.a)
+    if linkage.b is not None:
+        assert np.allclose(np.hypot(*(at.D - at.C)[sure].T), linkage.b)
+    assert np.allclose(np.hypot(*(at.P - at.C)[sure].T), math.hypot(linkage.coupler_x, linkage.coupler_y))
+    step, rates = 1e-6, linkage.velocities(ANGLES)
+    places = (linkage.places(ANGLES + step) - linkage.places(ANGLES - step)) / (2 * step)
+    assert np.allclose(places[sure], rates.slider[sure], atol=1e-6)
+    around = (linkage.velocities(ANGLES + step).P - linkage.velocities(ANGLES - step).P) / (2 * step)
+    assert np.allclose(around[sure], linkage.accelerations(ANGLES).P[sure], rtol=1e-4, atol=1e-4)
+    assert linkage.mobility["input_turns_fully"] is True
+    assert np.nanmin(linkage.transmission_deg(ANGLES)) > 10
+    assert np.min(np.hypot(*(linkage.coupler_curve(0.0) - linkage.positions(0.0).P).T)) < 0.05
+    file = tmp_path / "linkage.toml"
+    file.write_text(linkage.to_toml())
+    read = lw.load(file)
+    assert read == linkage
+    assert hash(read) == hash(linkage)
+    assert linkage.kind in repr(linkage)
+    with pytest.raises(lw.ProblemError, match="is not a four-bar"):
+        lw.cognates(linkage)  # type: ignore[arg-type]
+
+
+def test_a_function_of_a_slider_is_found_and_drawn() -> None:
+    problem = lw.function([0, 40, 80, 120, 160, 200], output=[0, 12, 40, 68, 90, 99], unit="mm", solve={"candidates": 1})
+    best = lw.synth(problem).candidates[0]
+    linkage = best.linkage
+    assert isinstance(linkage, lw.SliderLinkage)
+    sign = -1 if best.sense == "opposite" else 1
+    made = sign * linkage.places(np.radians(best.crank_deg)) - best.output_offset
+    assert np.sqrt(np.mean((made - [0, 12, 40, 68, 90, 99]) ** 2)) == pytest.approx(best.error["rms"])
+    pytest.importorskip("matplotlib").use("agg")
+    assert len(best.plot().lines) > 3
+    with pytest.raises(lw.ProblemError, match="a length must be positive|must be positive"):
+        lw.slider_crank((0, 0), -1.0, 3.0, (0, 0), 0.0)

@@ -4,18 +4,21 @@
 //! ratio, change point), a second search follows, of the same problem with its limits tightened to those of a buildable
 //! linkage: from the answers found so far, then in rounds of fresh starts, until the best has been reached `HITS`
 //! times, `QUIET` rounds have brought nothing better, or the evaluations that the caller allows are used.
+//!
+//! A four-bar on the limit of its link ratio is nearly a linkage with a slider, the limit of longer and longer links. So
+//! these are searched for too, and one that is nearer to the target is the buildable candidate.
 
 use super::belief::SAME_OPTIMUM;
 use super::constants::buildable::{
-    BATCH, HALVINGS, HITS, LAST_SHARE, MOST_FROM, QUIET, RAISES, SHORTER, STRICT_DEG, STRICT_FIT, WARM,
-    WARM_SHARE,
+    BATCH, HALVINGS, HITS, LAST_SHARE, MOST_FROM, QUIET, RAISES, SHORTER, SLIDERS, STRICT_DEG, STRICT_FIT,
+    WARM, WARM_SHARE,
 };
 use super::driver::{Allowance, Standing, Strategy, drive, in_parallel};
 use super::multistart::{Fitted, LONG_FIT, RoundOutcome, fit_and_judge, judged, polish, round};
 use super::plan::Place;
 use super::starts::Starts;
 use super::states::SearchState;
-use super::{Context, Progress};
+use super::{Context, Progress, sliders};
 use crate::judge::costs::marginal;
 use crate::judge::loosen::judged_under;
 use crate::judge::rank::{chosen, compare};
@@ -24,6 +27,7 @@ use crate::judge::warnings::{GREATEST_LINK_RATIO, LEAST_TRANSMISSION_DEG, is_ser
 use crate::mechanism::LinkageType;
 use crate::record::{Candidate, Evaluations, WarningKind};
 use crate::task::Problem;
+use crate::task::requirement::RequirementKind;
 use crate::task::spec::ProblemSpec;
 
 /// Index of the first round of the second search: its random streams are apart from those of the main search.
@@ -88,6 +92,13 @@ pub fn buildable(
         let until_stopped = found.iter().take_while(|_| !context.stopped());
         until_stopped.filter_map(|c| place.back(problem, c)).for_each(|candidate| offer(&candidate));
     }
+    let left = allowance.saturating_sub(outcome.evaluations.objective);
+    if lies_on_link_ratio(first) && left > 0 && !context.stopped() {
+        let (found, evaluations) = sliders::beside_four_bars(context, left.min(SLIDERS));
+        outcome.evaluations += evaluations;
+        let better = |c: &&Candidate| c.accepted && c.error.objective < first.error.objective;
+        found.iter().filter(better).for_each(&mut offer);
+    }
     if let Some(best) = &mut best {
         let equal = |c: &&Candidate| {
             (c.linkage, &c.crank_deg, &c.t1_at) == (best.linkage, &best.crank_deg, &best.t1_at)
@@ -106,6 +117,11 @@ pub fn buildable(
     }
     outcome.candidate = best;
     outcome
+}
+
+/// Returns whether a candidate lies on the limit of its link ratio: links that long want to be a slider.
+fn lies_on_link_ratio(candidate: &Candidate) -> bool {
+    candidate.warnings.iter().any(|warning| warning.key == RequirementKind::LinkRatio.name())
 }
 
 /// Returns the problem with its limits on transmission angle and link ratio tightened to those of a buildable linkage.

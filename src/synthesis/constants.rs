@@ -56,7 +56,9 @@ pub mod sliders {
     use super::{Effort, Stopping};
     /// Rounds that run in parallel before any is read.
     pub const BATCH: u64 = 4;
-    /// Batches that run before a search for four-bars, which an exact answer of theirs makes needless.
+    /// Batches that run before any search for four-bars, and before the whole one: an exact answer of theirs makes it needless.
+    /// Where there is none a batch takes four times as long as a search that finds one, so the first look is short.
+    pub const FIRST: u64 = 1;
     pub const GLIMPSE: u64 = 6;
     /// Shapes drawn in a round, the part of them whose crank turns fully, those fitted for a few steps, and to convergence.
     pub const DRAWS: usize = 240;
@@ -103,7 +105,7 @@ pub mod plan {
     pub const POLISH_SHARE: u64 = 5;
     /// A search for several kinds first looks for an exact four-bar with so many evaluations, and for an exact linkage with a
     /// slider with one part in `GLIMPSE_SHARE` of its evaluations. `cargo bench --bench sliders -- mixed` chooses them.
-    pub const GLIMPSE: u64 = 8000;
+    pub const GLIMPSE: u64 = 6000;
     pub const GLIMPSE_SHARE: u64 = 4;
     /// Number of the other candidates found around a far target's own centre that are brought back to the target.
     pub const FAR_OTHERS: usize = 32;
@@ -424,6 +426,8 @@ pub mod buildable {
     /// more than the first.
     pub const SHARE: u64 = 8;
     pub const LEAST: u64 = 20_000;
+    /// The most evaluations of the search for linkages with a slider beside a four-bar on the limit of its link ratio.
+    pub const SLIDERS: u64 = 20_000;
     /// Rounds that have to reach the best answer of the second search.
     pub const HITS: usize = 4;
     /// Rounds without a better answer after which the second search ends.

@@ -6,6 +6,7 @@
 //! evolution for a feasible design, and polishes the results. The population searches alone run without a polish.
 
 use super::constants::plan::{FAR_OTHERS, GLIMPSE, GLIMPSE_SHARE, LOCAL_SHARE, POLISH_SHARE, RELAXED_SHARE};
+use super::constants::sliders::{FIRST as SLIDERS_FIRST, GLIMPSE as SLIDERS_GLIMPSE};
 use super::driver::{Allowance, Found};
 use super::family::{freedom, one_is_enough};
 use super::frame::{Frame, in_frame};
@@ -71,7 +72,8 @@ pub fn approximate(context: Context<'_>) -> Result<SearchOutcome, PopulationErro
     Ok(beside(context, found, sliders))
 }
 
-/// Looks for an exact answer of any kind with little effort for each, where one is enough; `None` if there is none. Also
+/// Looks for an exact answer of any kind with little effort for each, where one is enough: first a few rounds of sliders, then
+/// four-bars, then more sliders. `None` if there is none. Also
 /// returns the evaluations of its search for four-bars, which the one that follows repeats.
 fn glimpse(
     context: Context<'_>,
@@ -83,18 +85,23 @@ fn glimpse(
     {
         return Ok((None, Evaluations::default()));
     }
+    let of_sliders = |sliders: &mut Sliders<'_>, batches: u64, spent: Evaluations| {
+        let found = sliders.glimpse(context, solve.evaluations / GLIMPSE_SHARE, batches);
+        found.map(|mut found| {
+            found.evaluations += spent;
+            ranked(context, found)
+        })
+    };
+    if let Some(exact) = of_sliders(sliders, SLIDERS_FIRST, Evaluations::default()) {
+        return Ok((Some(exact), Evaluations::default()));
+    }
     // Its checkpoints would be taken for those of the whole search.
     let four_bars = four_bars_within(Context { keeper: None, ..context }, GLIMPSE)?;
     let spent = four_bars.evaluations;
     if is_exact(context.problem, &four_bars.candidates) {
         return Ok((Some(four_bars), spent));
     }
-    let found = sliders.glimpse(context, solve.evaluations / GLIMPSE_SHARE);
-    let exact = found.map(|mut found| {
-        found.evaluations += spent;
-        ranked(context, found)
-    });
-    Ok((exact, spent))
+    Ok((of_sliders(sliders, SLIDERS_GLIMPSE, spent), spent))
 }
 
 /// Returns whether one of the candidates is accepted and exact.

@@ -252,3 +252,20 @@ fn a_record_with_a_stray_key_of_another_kind_is_refused() {
         serde_json::from_str::<OneLoop>(&text.replace(r#""B": [1, 0], "#, "").replace(r#""b": 3, "#, ""));
     assert!(missing.expect_err("b is missing").to_string().contains("missing field `b`"));
 }
+
+#[test]
+fn a_four_bar_on_the_limit_of_its_link_ratio_has_a_slider_beside_it() {
+    let linkage = slider_crank();
+    let angles: Vec<f64> = (0..30).map(|j| 0.4 + 4.4 * f64::from(j) / 29.0).collect();
+    // Bounds so wide that the ratio of 20 is what decides.
+    let more = "[design]\nA = [[-100, 100], [-100, 100]]\nB = [[-100, 100], [-100, 100]]\nground = [0.1, 200]\na = [0.1, 200]\n\
+                b = [0.1, 200]\nc = [0.1, 200]\n[require]\nlongest_max = \"any\"\n[solve]\ncandidates = 1\n";
+    let record = solved(parse(&problem(&linkage, &angles, false, more)).spec);
+    let first = &record.candidates[0];
+    assert_eq!(first.linkage.kind(), LoopKind::FourBar);
+    assert!(first.warnings.iter().any(|warning| warning.key == "link_ratio_max"), "{:?}", first.warnings);
+    let beside = record.buildable.as_ref().expect("a slider beside it");
+    assert_eq!(beside.linkage.kind(), LoopKind::SliderCrank);
+    assert!(beside.accepted && beside.error.rms_over_size < 1e-9, "{}", beside.error.rms_over_size);
+    assert_eq!(verify(&record).expect("a record"), []);
+}

@@ -19,8 +19,7 @@ mod starts;
 
 use super::Context;
 use super::constants::sliders::{
-    APART, BATCH, FAMILY_BATCHES, GLIMPSE, KEPT, LEAST_POLISHED, LONG, LONG_FIT, POLISH, SHORT, SHORT_FIT,
-    STOPPING,
+    APART, BATCH, FAMILY_BATCHES, KEPT, LEAST_POLISHED, LONG, LONG_FIT, POLISH, SHORT, SHORT_FIT, STOPPING,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, drive, in_parallel};
 use super::family::{climb, freedom_within, one_is_enough};
@@ -29,10 +28,11 @@ use super::states::{RepeatedState, SearchState};
 use crate::judge::rank::{exact_cost, searched, sort};
 use crate::mechanism::LoopKind;
 use crate::numbers::arithmetic::streams::stream;
-use crate::record::{Candidate, Reason};
+use crate::record::{Candidate, Evaluations, Reason};
 use crate::task::Problem;
 use crate::task::forms::slider::limits::Limited;
 use crate::task::forms::slider::shape::SHAPE;
+use crate::task::spec::{Method, Objective};
 pub(super) use fits::refit;
 use fits::{Fits, start_at};
 use guided::Guided;
@@ -58,6 +58,40 @@ pub(super) struct Sliders<'a> {
     at: RepeatedState,
 }
 
+/// Searches for linkages with a slider for the problem of four-bars of a context, with at most `limit` evaluations. Returns the
+/// accepted ones, the best first, and the evaluations used; none where they are not searched for.
+pub(super) fn beside_four_bars(context: Context<'_>, limit: u64) -> (Vec<Candidate>, Evaluations) {
+    let problem = context.problem;
+    let mut spec = problem.spec().clone();
+    if !spec.design.is_of_four_bars() || !suits(problem) {
+        return (Vec::new(), Evaluations::default());
+    }
+    let slides = |kind: &LoopKind| match kind {
+        LoopKind::FourBar => false,
+        LoopKind::SliderCrank => !problem.is_function(),
+        LoopKind::InvertedSliderCrank => true,
+    };
+    let kinds: Vec<LoopKind> = LoopKind::ALL.into_iter().filter(slides).collect();
+    (spec.design.mechanism, spec.solve.candidates) = (kinds.clone(), 1);
+    let Ok(within) = problem.with(spec) else { return (Vec::new(), Evaluations::default()) };
+    let context = Context { keeper: None, ..context.of(&within) }.silent();
+    let Some(search) = Sliders::of(context, &kinds) else { return (Vec::new(), Evaluations::default()) };
+    let found = search.search(context, Allowance { limit, patience: limit });
+    (found.candidates.into_iter().filter(|c| c.accepted).collect(), found.evaluations)
+}
+
+/// Returns whether linkages with a slider are searched for in a problem: by least squares, without exact targets, free crank
+/// angles among prescribed ones, or free ranges of a function.
+fn suits(problem: &Problem) -> bool {
+    let (task, solve) = (problem.task(), &problem.spec().solve);
+    let is_exact = task.tolerances().is_some_and(|list| list.contains(&0.0));
+    solve.objective == Objective::SumOfSquares
+        && matches!(solve.method, Method::Auto | Method::LeastSquares)
+        && !is_exact
+        && !task.is_partly_timed()
+        && task.ranges().are_written()
+}
+
 impl<'a> Sliders<'a> {
     /// Creates the search of a problem, or goes on with the one that was kept; `None` if none of the kinds has a slider.
     pub(super) fn of(context: Context<'a>, kinds: &[LoopKind]) -> Option<Self> {
@@ -76,12 +110,12 @@ impl<'a> Sliders<'a> {
         Some(Sliders { target, guided, kinds, exact, freedom, glimpse: None, at })
     }
 
-    /// Runs the first `GLIMPSE` batches with at most `limit` evaluations. Returns what has been found if that is an exact
+    /// Runs the first `batches` with at most `limit` evaluations. Returns what has been found if that is an exact
     /// answer, and one is enough.
-    pub(super) fn glimpse(&mut self, context: Context<'_>, limit: u64) -> Option<Found> {
+    pub(super) fn glimpse(&mut self, context: Context<'_>, limit: u64, batches: u64) -> Option<Found> {
         let used = self.at.evaluations.objective.max(self.at.draws);
-        if self.at.batch < GLIMPSE && used < limit {
-            self.glimpse = Some(GLIMPSE);
+        if self.at.batch < batches && used < limit {
+            self.glimpse = Some(batches);
             drive(context, Allowance { limit, patience: limit }, self);
             self.glimpse = None;
         }
