@@ -259,7 +259,8 @@ fn a_four_bar_on_the_limit_of_its_link_ratio_has_a_slider_beside_it() {
     let angles: Vec<f64> = (0..30).map(|j| 0.4 + 4.4 * f64::from(j) / 29.0).collect();
     // Bounds so wide that the ratio of 20 is what decides.
     let more = "[design]\nA = [[-100, 100], [-100, 100]]\nB = [[-100, 100], [-100, 100]]\nground = [0.1, 200]\na = [0.1, 200]\n\
-                b = [0.1, 200]\nc = [0.1, 200]\n[require]\nlongest_max = \"any\"\n[solve]\ncandidates = 1\n";
+                b = [0.1, 200]\nc = [0.1, 200]\n[require]\nlongest_max = \"any\"\n[solve]\ncandidates = 1\n\
+                evaluations = 1000000\n";
     let record = solved(parse(&problem(&linkage, &angles, false, more)).spec);
     let first = &record.candidates[0];
     assert_eq!(first.linkage.kind(), LoopKind::FourBar);

@@ -47,7 +47,7 @@ pub(super) fn output_starts(
     };
     let is_free = [*offset == AngleOffset::Free, limits.bounds[FRAME].0 < limits.bounds[FRAME].1];
     let mut starts = Vec::new();
-    let place = Placing::of(limits, kind);
+    let place = Placing::of(limits, kind, outputs.kind);
     for sign in signs {
         let given = crank_angles.iter().zip(&outputs.wanted).zip(&target.weights);
         let pairs: Vec<Pair> = given.map(|((delta, o), weight)| (*delta, sign * o, *weight)).collect();
@@ -101,10 +101,11 @@ struct Placing {
     pivot: Complex,
     ground: Complex,
     is_ground_given: bool,
+    output: Output,
 }
 
 impl Placing {
-    fn of(limits: &Limited, kind: LoopKind) -> Placing {
+    fn of(limits: &Limited, kind: LoopKind, output: Output) -> Placing {
         let middle = |k: usize| {
             let (low, high) = limits.bounds[k];
             if low.is_finite() && high.is_finite() { 0.5 * (low + high) } else { 0.0 }
@@ -116,7 +117,7 @@ impl Placing {
         };
         let is_fixed = |k: usize| limits.bounds[k].0 == limits.bounds[k].1;
         let is_ground_given = kind == LoopKind::InvertedSliderCrank && is_fixed(3) && is_fixed(4);
-        Placing { pivot, ground, is_ground_given }
+        Placing { pivot, ground, is_ground_given, output }
     }
 
     /// Returns the start at a solution; `None` if its numbers are of no use.
@@ -135,12 +136,11 @@ impl Placing {
         let length = if self.is_ground_given { self.ground.norm() / own } else { 1.0 };
         let shape = shape.carried(turn * length, self.pivot);
         let mut x = shape.unknowns(if is_input_free { phi0 + turn.arg() } else { 0.0 }, 0.0);
-        // An angle counts from the x axis, or from the ground line, where its offset is given.
-        let turned = matches!(shape.closure, Closure::Block { .. });
-        x[FRAME] = match (is_output_free, turned && self.is_ground_given) {
+        // A free angle counts from the x axis, that of the solution from the ground line.
+        x[FRAME] = match (is_output_free, self.output) {
             (false, _) => 0.0,
-            (true, true) => -beta - turn.arg(),
-            (true, false) => -beta,
+            (true, Output::Angle) => -beta - turn.arg(),
+            (true, Output::Place) => -beta,
         };
         let turns = shape.linkage(assembly).ok()?.mobility().input_turns_fully();
         let is_usable = x.iter().all(|x| x.is_finite());
