@@ -20,6 +20,8 @@ __all__ = [
     "ProblemError",
     "Rates",
     "Run",
+    "SliderLinkage",
+    "SliderRates",
     "__version__",
     "_panic",
     "_panic_here",
@@ -31,12 +33,14 @@ __all__ = [
     "compare",
     "export",
     "export_formats",
+    "inverted_slider_crank",
     "load",
     "main",
     "open",
     "parse_linkage",
     "parse_run",
     "schema",
+    "slider_crank",
     "snap",
     "suite",
     "sweep_merge",
@@ -406,7 +410,7 @@ class Run:
     @property
     def timing(self) -> dict[str, Any] | None: ...
     def record_json(self) -> bytes: ...
-    def linkage(self, which: str) -> FourBar | SliderLinkage: ...
+    def linkage(self, which: str) -> Any: ...
     def svg(self, which: str) -> str: ...
     def text(self) -> str: ...
     def summary_html(self) -> str: ...

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
     import pandas
 
-    from ._linkwright import FourBar, Problem, SliderLinkage
+    from ._linkwright import Problem
 
     Progress = Union[bool, Callable[[dict[str, Any]], object], None]
 
@@ -54,8 +54,8 @@ class Candidate:
         return [*super().__dir__(), *self.data]
 
     @property
-    def linkage(self) -> FourBar | SliderLinkage:
-        """The linkage, which can be moved."""
+    def linkage(self) -> Any:
+        """The linkage, which can be moved: a :class:`FourBar`, or a :class:`SliderLinkage`."""
         return self.result._run.linkage(self.which)
 
     def svg(self) -> str:

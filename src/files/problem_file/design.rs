@@ -69,8 +69,7 @@ pub(super) fn of_kinds(
         let help = "remove it, or write mechanism = \"slider-crank\" in [design]";
         return toml.refuse(&format!("require.{key}"), message, help);
     }
-    let Some(OneOrMore(kinds)) = &raw.mechanism else { return Ok(()) };
-    if kinds.is_empty() {
+    if raw.mechanism.as_ref().is_some_and(|OneOrMore(kinds)| kinds.is_empty()) {
         return toml.refuse(
             "design.mechanism",
             "no kind of linkage is listed",
@@ -112,6 +111,13 @@ pub(super) fn of_kinds(
     } else {
         return Ok(());
     };
+    if raw.mechanism.is_none() {
+        return toml.refuse_key(
+            "task.function",
+            why,
+            "a slider's places are those of a slider-crank: change the rest",
+        );
+    }
     toml.refuse("design.mechanism", why, "write mechanism = \"four-bar\", or change what does not go with it")
 }
 

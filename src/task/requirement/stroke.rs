@@ -6,6 +6,9 @@
 use super::{Definition, LimitUnit, Refusal, RequireSpec};
 use crate::task::spec::{Limits, TimingSpec};
 
+/// The time ratio that no slider-crank reaches: as b - a >= h where the crank turns fully, alpha < pi/2.
+const MOST_RATIO: f64 = 3.0;
+
 pub(super) const STROKE: Definition = Definition {
     key: "require.stroke",
     short: "stroke",
@@ -41,6 +44,10 @@ fn time_ratio(require: &RequireSpec, _: Option<&TimingSpec>) -> Result<(), Refus
         Some(Limits(least, _)) if least < 1.0 => Refusal::because(
             format!("time_ratio = {least}: it is the slower way over the quicker one"),
             "write 1 or more, such as 1.2; the sense in which the crank turns says which way is the slow one",
+        ),
+        Some(Limits(least, _)) if least >= MOST_RATIO => Refusal::because(
+            format!("time_ratio = {least}: a slider-crank whose crank turns fully stays below {MOST_RATIO}"),
+            "write less than 3: the ends of the stroke are less than a right angle apart, seen from A",
         ),
         _ => Ok(()),
     }
