@@ -1,11 +1,11 @@
 //! Multistart search for linkages with a slider, for paths and motions with prescribed or free timing and for functions:
-//! drawn shapes laid on the target, dyads through its poses, or linear solutions of its pairs, Levenberg-Marquardt fits with the closure of their kind, and a stopping rule by
-//! repeated hits of the best answer.
+//! drawn shapes laid on the target, dyads through its poses, or linear solutions of its pairs, Levenberg-Marquardt fits with
+//! the closure of their kind, and a stopping rule by repeated hits of the best answer.
 //!
-//! A round draws `DRAWS` shapes of one kind ([`starts`]), or pairs dyads that suit the poses ([`guided`]), or solves for shapes that suit the pairs of a function
-//! ([`output_starts`]), fits the `SHORT`
-//! that are nearest to the target for a few steps and the best `LONG` of those to convergence, and has the ends judged
-//! ([`fits`]). Kinds take turns. Rounds run in parallel in batches and are read in their order: the number of threads changes
+//! A round draws `DRAWS` shapes of one kind ([`starts`]), or pairs dyads that suit the poses ([`guided`]), or solves for
+//! shapes that suit the pairs of a function (`output_starts`), fits the `SHORT` that are nearest to the target for a few steps
+//! and the best `LONG` of those that lie apart to convergence, and has the ends judged ([`fits`]). Kinds take turns. Rounds
+//! run in parallel in batches and are read in their order: the number of threads changes
 //! nothing but the time. The search ends when enough rounds have reached the best answer (or the search has gone on for
 //! several times as long as it took to reach it) and as many distinct answers as were asked for are known, or no new one has
 //! come for `quiet_batches` of them; an exact answer needs no second hit, and where one is enough the rounds after it in its
