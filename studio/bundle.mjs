@@ -24,6 +24,7 @@ function program() {
 
 /** Files whose interfaces lie between parts of the page: what has them is neither sent nor kept. */
 const INSIDE = [
+  "angles",
   "bodies",
   "board",
   "boxes",
@@ -41,6 +42,7 @@ const INSIDE = [
   "pinmap",
   "pointers",
   "scene",
+  "slides",
   "store",
   "strip",
   "surface",

@@ -10,11 +10,11 @@ if TYPE_CHECKING:
 
     import pandas
 
-    from ._linkwright import Chain, FourBar, Problem
+    from ._linkwright import Chain, FourBar, Problem, SliderLinkage
     from ._result import Progress
 
     Path = Union[str, os.PathLike[str]]
-    Subject = Union["Result", "Candidate", FourBar, Path]
+    Subject = Union["Result", "Candidate", FourBar, SliderLinkage, Path]
 
 from . import _linkwright
 from ._files import write

@@ -4,7 +4,6 @@ use linkwright::internals::app::inputs::Given;
 use linkwright::internals::judge::practicality::clearance::Build;
 use linkwright::internals::judge::practicality::sensitivity::Dimension;
 use linkwright::internals::judge::practicality::{Closest, Practicality, Sweep, usual_tolerance};
-use linkwright::internals::mechanism::OneLoop;
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::practicality::practicality_text;
 use linkwright::{Problem, Unit};
@@ -29,7 +28,7 @@ pub fn built(
     };
     let (title, linkage, unit, found) = match given {
         Given::Linkage(file) => {
-            let linkage = OneLoop::from(file.linkage);
+            let linkage = file.linkage;
             let build = made(&file.name, Sweep::of_linkage(linkage), file.unit)?;
             let found = Practicality::of_linkage(linkage, build);
             (file.name.clone(), linkage, file.unit, found)

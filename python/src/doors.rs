@@ -49,17 +49,33 @@ pub fn given(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<Given>
         return run.get().given(which);
     }
     if let Ok(linkage) = subject.cast::<FourBar>() {
-        return Ok(Given::Linkage(Box::new(linkage.get().file.clone())));
+        let LinkageFile { name, unit, linkage } = linkage.get().file.clone();
+        return Ok(Given::Linkage(Box::new(LinkageFile { name, unit, linkage: linkage.into() })));
     }
     if subject.is_instance_of::<Chain>() {
-        return Err(refused("a chain is not a four-bar, and a four-bar is needed here"));
+        return Err(refused("a chain is no linkage of one loop, and one is needed here"));
     }
     if let Ok(linkage) = subject.cast::<SliderLinkage>() {
-        let kind = linkage.get().linkage.kind();
-        return Err(refused(format!("a {kind} is not a four-bar, and a four-bar is needed here")));
+        let SliderLinkage { name, unit, linkage } = linkage.get().clone();
+        return Ok(Given::Linkage(Box::new(LinkageFile { name, unit, linkage })));
     }
     let path: PathBuf = subject.extract().map_err(|_| unfit(subject))?;
     inputs::read(&path).map_err(refused)
+}
+
+/// As [`given`], with a linkage that is a four-bar.
+fn given_four_bar(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<Given<linkwright::FourBar>> {
+    match given(subject, which)? {
+        Given::Run(run) => Ok(Given::Run(run)),
+        Given::Linkage(file) => {
+            let LinkageFile { name, unit, linkage } = *file;
+            let Some(four_bar) = linkage.four_bar() else {
+                let kind = linkage.kind();
+                return Err(refused(format!("a {kind} is not a four-bar, and a four-bar is needed here")));
+            };
+            Ok(Given::Linkage(Box::new(LinkageFile { name, unit, linkage: *four_bar })))
+        }
+    }
 }
 
 /// Returns the linkage, of any kind, that an argument names.
@@ -313,7 +329,7 @@ pub fn snap<'py>(
                 return Err(refused(format!("{key} = {value}: a number above 0 is needed")));
             }
         }
-        let subject = Snapping::of(given(subject, which)?).map_err(refused)?;
+        let subject = Snapping::of(given_four_bar(subject, which)?).map_err(refused)?;
         let fixed = fixed(&subject.candidate.linkage, &keep, &set);
         let wanted = subject.problem.spec().solve.candidates;
         let request = SnapRequest { stock, lengths, fixed, wanted };

@@ -10,6 +10,7 @@
 //! | [`errors`] | exceptions, and the border that no panic crosses |
 //! | [`linkage`] | the class of four-bars |
 //! | [`memory`] | memory of large arrays, kept for the next ones |
+//! | [`moving`] | figures of a moving linkage as arrays, for every kind of linkage |
 //! | [`pools`] | thread pools that are kept between calls, fork-safe |
 //! | [`problem`] | the class of problems |
 //! | [`proving`] | proofs: verify and certify |
@@ -27,6 +28,7 @@ mod doors;
 mod errors;
 mod linkage;
 mod memory;
+mod moving;
 mod pools;
 mod problem;
 mod proving;

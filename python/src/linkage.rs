@@ -2,16 +2,15 @@
 
 use crate::arrays::{Input, Output};
 use crate::errors::{guarded, refused};
-use crate::values;
+use crate::{moving, values};
 use linkwright::internals::files::linkage_file::{self, LinkageFile};
 use linkwright::internals::files::name;
 use linkwright::internals::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, LinkageMotion, PointMotion, Turning};
 use linkwright::internals::mechanism::four_bar::positions::JointColumns;
 use linkwright::internals::mechanism::{analysis, xy};
-use linkwright::{AssemblyMode, Complex, CouplerCurve, CouplerSide, NaturalCoordinates, Unit};
+use linkwright::{AssemblyMode, Complex, CouplerSide, NaturalCoordinates, Unit};
 use numpy::PyArrayDyn;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// A planar four-bar linkage.
@@ -102,33 +101,14 @@ impl FourBar {
         of_point: fn(PointMotion) -> Complex,
         of_link: fn(Turning) -> f64,
     ) -> PyResult<Rates> {
-        let angles = Input::of(phi, "phi")?;
-        let shape = angles.shape();
-        let linear = || Output::new(py, shape, Some(2));
-        let angular = || Output::new(py, shape, None);
-        let read = |motion: &LinkageMotion| {
-            let LinkageMotion { crank_pin, follower_pin, coupler_point, coupler, follower, .. } = *motion;
+        let linkage = self.file.linkage;
+        let at = |angle: f64| {
+            let LinkageMotion { crank_pin, follower_pin, coupler_point, coupler, follower, .. } =
+                linkage.motion(angle, input).definite()?;
             let points = [crank_pin, follower_pin, coupler_point].map(|point| xy(of_point(point)));
-            (points, [coupler, follower].map(of_link))
+            Some((points, [coupler, follower].map(of_link)))
         };
-        let open = ([[f64::NAN; 2]; 3], [f64::NAN; 2]);
-        let (mut points, mut links) = ([linear()?, linear()?, linear()?], [angular()?, angular()?]);
-        {
-            let numbers = angles.numbers()?;
-            let [c, d, p] = &mut points;
-            let (c, d, p) = (c.points()?, d.points()?, p.points()?);
-            let [coupler, follower] = &mut links;
-            let (coupler, follower) = (coupler.numbers()?, follower.numbers()?);
-            let linkage = self.file.linkage;
-            py.detach(|| {
-                for (i, angle) in numbers.iter().enumerate() {
-                    let motion = linkage.motion(*angle, input).definite();
-                    ([c[i], d[i], p[i]], [coupler[i], follower[i]]) = motion.as_ref().map_or(open, read);
-                }
-            });
-        }
-        let ([crank_pin, follower_pin, coupler_point], [coupler, follower]) =
-            (points.map(Output::array), links.map(Output::array));
+        let ([crank_pin, follower_pin, coupler_point], [coupler, follower]) = moving::rates(py, phi, at)?;
         Ok(Rates { crank_pin, follower_pin, coupler_point, coupler, follower })
     }
 }
@@ -323,18 +303,8 @@ impl FourBar {
         phi: &Bound<'py, PyAny>,
     ) -> PyResult<Py<PyArrayDyn<f64>>> {
         guarded(|| {
-            let angles = Input::of(phi, "phi")?;
-            let mut found = Output::new(py, angles.shape(), None)?;
-            {
-                let (numbers, places) = (angles.numbers()?, found.numbers()?);
-                let linkage = self.file.linkage;
-                py.detach(|| {
-                    for (place, angle) in places.iter_mut().zip(numbers) {
-                        *place = linkage.transmission_angle(*angle).map_or(f64::NAN, f64::to_degrees);
-                    }
-                });
-            }
-            Ok(found.array())
+            let linkage = self.file.linkage;
+            moving::numbers(py, phi, |angle| linkage.transmission_angle(angle).map(f64::to_degrees))
         })
     }
 
@@ -344,17 +314,7 @@ impl FourBar {
         text_signature = "($self, at=0.0, samples=720)"
     )]
     fn coupler_curve(&self, py: Python<'_>, at: f64, samples: usize) -> PyResult<Py<PyArrayDyn<f64>>> {
-        guarded(|| {
-            if !(8..=100_000).contains(&samples) {
-                return Err(PyValueError::new_err(format!("samples = {samples}: 8 to 100000 are possible")));
-            }
-            let linkage = self.file.linkage;
-            let curve = CouplerCurve::through(&linkage, at, linkage.assembly(), samples);
-            let points: Vec<[f64; 2]> = curve.points().map(|p| [p.re, p.im]).collect();
-            let mut found = Output::new(py, &[points.len()], Some(2))?;
-            found.points()?.copy_from_slice(&points);
-            Ok(found.array())
-        })
+        guarded(|| moving::coupler_curve(py, &self.file.linkage, at, samples))
     }
 
     /// Returns the text of its linkage file.

@@ -3,18 +3,18 @@
 use crate::arrays::{Input, Output};
 use crate::errors::{guarded, refused};
 use crate::linkage::{Positions, unit};
-use crate::values;
+use crate::{moving, values};
 use linkwright::internals::files::linkage_file::any_to_toml;
 use linkwright::internals::files::name;
 use linkwright::internals::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, PointMotion};
 use linkwright::internals::mechanism::slider::motion::{SlidingMotion, motion};
 use linkwright::internals::mechanism::{
-    InvertedSliderCrankParameters, LoopJoints, OneLoop, SliderCrankParameters, xy,
+    InvertedSliderCrank, InvertedSliderCrankParameters, LinkageError, LoopJoints, OneLoop, SliderCrank,
+    SliderCrankParameters, xy,
 };
-use linkwright::{AssemblyMode, Complex, CouplerCurve, Unit};
+use linkwright::{AssemblyMode, Complex, Unit};
 use numpy::PyArrayDyn;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::json;
 
@@ -58,26 +58,6 @@ impl SliderLinkage {
         self.linkage.joints_with(angle, self.linkage.assembly())
     }
 
-    /// Returns an array with a number at each crank angle, NaN where there is none.
-    fn numbers<'py>(
-        &self,
-        py: Python<'py>,
-        phi: &Bound<'py, PyAny>,
-        of: impl Fn(f64) -> Option<f64> + Sync,
-    ) -> PyResult<Py<PyArrayDyn<f64>>> {
-        let angles = Input::of(phi, "phi")?;
-        let mut found = Output::new(py, angles.shape(), None)?;
-        {
-            let (numbers, places) = (angles.numbers()?, found.numbers()?);
-            py.detach(|| {
-                for (place, angle) in places.iter_mut().zip(numbers) {
-                    *place = of(*angle).unwrap_or(f64::NAN);
-                }
-            });
-        }
-        Ok(found.array())
-    }
-
     fn moving(&self, angle: f64, input: CrankMotion) -> Option<SlidingMotion> {
         match &self.linkage {
             OneLoop::FourBar(_) => None,
@@ -86,38 +66,26 @@ impl SliderLinkage {
         }
     }
 
-    fn rates<'py>(
+    fn rates(
         &self,
-        py: Python<'py>,
-        phi: &Bound<'py, PyAny>,
+        py: Python<'_>,
+        phi: &Bound<'_, PyAny>,
         input: CrankMotion,
-        read: fn(&SlidingMotion) -> ([Complex; 3], [f64; 2]),
+        of_point: fn(PointMotion) -> Complex,
+        of_parts: fn(&SlidingMotion) -> [f64; 2],
     ) -> PyResult<SliderRates> {
-        let angles = Input::of(phi, "phi")?;
-        let shape = angles.shape();
-        let linear = || Output::new(py, shape, Some(2));
-        let angular = || Output::new(py, shape, None);
-        let (mut points, mut links) = ([linear()?, linear()?, linear()?], [angular()?, angular()?]);
-        {
-            let numbers = angles.numbers()?;
-            let [c, d, p] = &mut points;
-            let (c, d, p) = (c.points()?, d.points()?, p.points()?);
-            let [coupler, slider] = &mut links;
-            let (coupler, slider) = (coupler.numbers()?, slider.numbers()?);
-            py.detach(|| {
-                for (i, angle) in numbers.iter().enumerate() {
-                    let found = self.moving(*angle, input).as_ref().map(read);
-                    let (points, rates) = found
-                        .map_or(([[f64::NAN; 2]; 3], [f64::NAN; 2]), |(points, rates)| {
-                            (points.map(xy), rates)
-                        });
-                    ([c[i], d[i], p[i]], [coupler[i], slider[i]]) = (points, rates);
-                }
-            });
-        }
-        let [crank_pin, slider_pin, coupler_point] = points.map(Output::array);
-        let [coupler, slider] = links.map(Output::array);
+        let at = |angle: f64| {
+            let moved = self.moving(angle, input)?;
+            let points = [moved.crank_pin, moved.rates.slider_pin, moved.coupler_point];
+            Some((points.map(|point| xy(of_point(point))), of_parts(&moved)))
+        };
+        let ([crank_pin, slider_pin, coupler_point], [coupler, slider]) = moving::rates(py, phi, at)?;
         Ok(SliderRates { crank_pin, slider_pin, coupler_point, coupler, slider })
+    }
+
+    /// Returns a linkage, if its numbers are those of one, with its name and the unit of a label.
+    fn named(linkage: Result<OneLoop, LinkageError>, name: &str, label: Option<&str>) -> PyResult<Self> {
+        Ok(SliderLinkage { name: name.to_owned(), unit: unit(label)?, linkage: linkage.map_err(refused)? })
     }
 }
 
@@ -146,7 +114,7 @@ pub fn slider_crank(
     unit: Option<&str>,
 ) -> PyResult<SliderLinkage> {
     guarded(|| {
-        let made = linkwright::internals::mechanism::SliderCrank::new(SliderCrankParameters {
+        let made = SliderCrank::new(SliderCrankParameters {
             crank_pivot: A,
             crank: a,
             coupler: b,
@@ -156,8 +124,7 @@ pub fn slider_crank(
             coupler_y,
             assembly: self::t1(t1)?,
         });
-        let linkage = OneLoop::SliderCrank(made.map_err(refused)?);
-        Ok(SliderLinkage { name: name.to_owned(), unit: self::unit(unit)?, linkage })
+        SliderLinkage::named(made.map(OneLoop::SliderCrank), name, unit)
     })
 }
 
@@ -181,18 +148,16 @@ pub fn inverted_slider_crank(
     unit: Option<&str>,
 ) -> PyResult<SliderLinkage> {
     guarded(|| {
-        let made =
-            linkwright::internals::mechanism::InvertedSliderCrank::new(InvertedSliderCrankParameters {
-                crank_pivot: A,
-                block_pivot: B,
-                crank: a,
-                offset,
-                coupler_x,
-                coupler_y,
-                assembly: self::t1(t1)?,
-            });
-        let linkage = OneLoop::InvertedSliderCrank(made.map_err(refused)?);
-        Ok(SliderLinkage { name: name.to_owned(), unit: self::unit(unit)?, linkage })
+        let made = InvertedSliderCrank::new(InvertedSliderCrankParameters {
+            crank_pivot: A,
+            block_pivot: B,
+            crank: a,
+            offset,
+            coupler_x,
+            coupler_y,
+            assembly: self::t1(t1)?,
+        });
+        SliderLinkage::named(made.map(OneLoop::InvertedSliderCrank), name, unit)
     })
 }
 
@@ -321,18 +286,15 @@ impl SliderLinkage {
     /// Computes the slider's place at crank angles: along its line from the foot of the perpendicular from A, or of the block
     /// along the coupler from C; NaN where the loop does not close.
     fn places<'py>(&self, py: Python<'py>, phi: &Bound<'py, PyAny>) -> PyResult<Py<PyArrayDyn<f64>>> {
-        guarded(|| self.numbers(py, phi, |angle| self.linkage.slider_place(&self.at(angle)?)))
+        guarded(|| moving::numbers(py, phi, |angle| self.linkage.slider_place(&self.at(angle)?)))
     }
 
     /// Computes velocities at crank angles, for a crank speed in rad/s.
     #[pyo3(signature = (phi, omega = 1.0))]
     fn velocities<'py>(&self, py: Python<'py>, phi: &Bound<'py, PyAny>, omega: f64) -> PyResult<SliderRates> {
         guarded(|| {
-            self.rates(py, phi, CrankMotion::steady(omega), |m| {
-                let of = |point: PointMotion| point.velocity;
-                let points = [m.crank_pin, m.rates.slider_pin, m.coupler_point].map(of);
-                (points, [m.rates.coupler.speed_rad_s, m.rates.sliding.speed])
-            })
+            let of_parts = |m: &SlidingMotion| [m.rates.coupler.speed_rad_s, m.rates.sliding.speed];
+            self.rates(py, phi, CrankMotion::steady(omega), |point| point.velocity, of_parts)
         })
     }
 
@@ -347,11 +309,9 @@ impl SliderLinkage {
     ) -> PyResult<SliderRates> {
         guarded(|| {
             let input = CrankMotion { speed_rad_s: omega, acceleration_rad_s2: alpha };
-            self.rates(py, phi, input, |m| {
-                let of = |point: PointMotion| point.acceleration;
-                let points = [m.crank_pin, m.rates.slider_pin, m.coupler_point].map(of);
-                (points, [m.rates.coupler.acceleration_rad_s2, m.rates.sliding.acceleration])
-            })
+            let of_parts =
+                |m: &SlidingMotion| [m.rates.coupler.acceleration_rad_s2, m.rates.sliding.acceleration];
+            self.rates(py, phi, input, |point| point.acceleration, of_parts)
         })
     }
 
@@ -363,7 +323,7 @@ impl SliderLinkage {
     ) -> PyResult<Py<PyArrayDyn<f64>>> {
         guarded(|| {
             let of = |angle: f64| self.at(angle).map(|_| self.linkage.transmission_at(angle).to_degrees());
-            self.numbers(py, phi, of)
+            moving::numbers(py, phi, of)
         })
     }
 
@@ -373,16 +333,7 @@ impl SliderLinkage {
         text_signature = "($self, at=0.0, samples=720)"
     )]
     fn coupler_curve(&self, py: Python<'_>, at: f64, samples: usize) -> PyResult<Py<PyArrayDyn<f64>>> {
-        guarded(|| {
-            if !(8..=100_000).contains(&samples) {
-                return Err(PyValueError::new_err(format!("samples = {samples}: 8 to 100000 are possible")));
-            }
-            let curve = CouplerCurve::through(&self.linkage, at, self.linkage.assembly(), samples);
-            let points: Vec<[f64; 2]> = curve.points().map(xy).collect();
-            let mut found = Output::new(py, &[points.len()], Some(2))?;
-            found.points()?.copy_from_slice(&points);
-            Ok(found.array())
-        })
+        guarded(|| moving::coupler_curve(py, &self.linkage, at, samples))
     }
 
     /// Returns the text of its linkage file.

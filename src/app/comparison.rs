@@ -7,7 +7,7 @@ use crate::files::problem_file::ProblemFile;
 use crate::judge::assess::{assess, assess_again};
 use crate::judge::figures::extent;
 use crate::judge::verify::verify_candidate;
-use crate::mechanism::{FourBar, LinkageError};
+use crate::mechanism::LinkageError;
 use crate::mechanism::{OneLoop, Unit};
 use crate::record::Candidate;
 use crate::record::digest::digest;
@@ -52,8 +52,6 @@ enum NotMeasured {
     Linkage(#[from] LinkageError),
     #[error("it cannot be assembled at every {noun} of {name}")]
     NotAssembled { name: String, noun: &'static str },
-    #[error("a {kind} is compared on the target that it was found for alone")]
-    OfASlider { kind: &'static str },
 }
 
 /// The target that errors are measured against, with the problem that it belongs to.
@@ -114,23 +112,15 @@ impl Target {
     }
 
     /// Returns the linkage in this target's unit, measured at the positions nearest to its points or at its angles.
-    fn nearest(&self, linkage: &FourBar, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
+    fn nearest(&self, linkage: impl Into<OneLoop>, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
         let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| from.factor_to(to));
-        let linkage = linkage.scaled(factor)?;
-        nearest_positions(&self.problem, &linkage)
+        let linkage = linkage.into().scaled(factor)?;
+        nearest_positions(&self.problem, linkage)
             .and_then(|(crank_deg, assemblies)| assess(&self.problem, linkage, &crank_deg, &assemblies))
             .ok_or_else(|| NotMeasured::NotAssembled {
                 name: self.name.clone(),
                 noun: self.problem.spec().task.noun(),
             })
-    }
-
-    /// As [`Self::nearest`], of a linkage of any kind; one with a slider is measured at its own target alone.
-    fn nearest_to(&self, linkage: &OneLoop, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
-        match linkage.four_bar() {
-            Some(linkage) => self.nearest(linkage, unit),
-            None => Err(NotMeasured::OfASlider { kind: linkage.kind().name() }),
-        }
     }
 
     /// Returns a candidate judged at its own positions and in its own frame.
@@ -260,9 +250,9 @@ impl Measured {
     }
 
     /// Measures a linkage without a run.
-    fn file(&mut self, label: String, file: &LinkageFile, on: &Target) {
+    fn file(&mut self, label: String, file: &LinkageFile<OneLoop>, on: &Target) {
         let entry = on
-            .nearest(&file.linkage, file.unit)
+            .nearest(file.linkage, file.unit)
             .map(|candidate| on.entry(label.clone(), candidate, file.unit, false));
         self.put(label, entry);
     }
@@ -283,7 +273,7 @@ impl Measured {
             Ok(recorded.clone())
         } else {
             let there = same.then(|| on.at(recorded)).flatten();
-            there.map_or_else(|| on.nearest_to(&recorded.linkage, own.unit), Ok)
+            there.map_or_else(|| on.nearest(recorded.linkage, own.unit), Ok)
         };
         let entry = measured
             .map(|candidate| Entry { untrue: found, ..on.entry(label.clone(), candidate, own.unit, true) });

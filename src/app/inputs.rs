@@ -11,9 +11,9 @@ use crate::record::{Candidate, Pick, Record};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-/// An input of the export, comparison and report commands.
+/// An input of the export, comparison and report commands, with linkages of one loop or of one kind.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Given<L = FourBar> {
+pub enum Given<L = OneLoop> {
     /// A result of a run.
     Run(Box<Run>),
     /// A linkage without a run.
@@ -135,18 +135,18 @@ pub enum NotRead {
 /// [`NotRead`].
 pub fn read(argument: &Path) -> Result<Given, NotRead> {
     if is_linkage_file(argument) {
-        return Ok(Given::Linkage(Box::new(linkage_file::load(argument)?)));
+        return Ok(Given::Linkage(Box::new(linkage_file::load_one_loop(argument)?)));
     }
     Ok(Given::Run(Box::new(read_run(argument)?)))
 }
 
-/// As [`read`], with a linkage file of any linkage of one loop.
+/// As [`read`], with a linkage file of a four-bar alone.
 ///
 /// # Errors
 /// [`NotRead`].
-pub fn read_one_loop(argument: &Path) -> Result<Given<OneLoop>, NotRead> {
+pub fn read_four_bar(argument: &Path) -> Result<Given<FourBar>, NotRead> {
     if is_linkage_file(argument) {
-        return Ok(Given::Linkage(Box::new(linkage_file::load_one_loop(argument)?)));
+        return Ok(Given::Linkage(Box::new(linkage_file::load(argument)?)));
     }
     Ok(Given::Run(Box::new(read_run(argument)?)))
 }

@@ -4,7 +4,7 @@
 use crate::app::inputs::{Given, NoCandidate};
 use crate::files::diagnostic::{Diagnostic, escaped};
 use crate::files::input_text;
-use crate::mechanism::{OneLoop, Unit, xy};
+use crate::mechanism::{FourBar, OneLoop, Unit, xy};
 use crate::record::{Candidate, ProblemRecord};
 use crate::report::text::clean;
 use crate::synthesis::snap::{Fixed, Length, Stock, own_curve};
@@ -57,7 +57,7 @@ impl Subject {
     ///
     /// # Errors
     /// [`NoSubject`].
-    pub fn of(given: Given) -> Result<Self, NoSubject> {
+    pub fn of(given: Given<FourBar>) -> Result<Self, NoSubject> {
         match given {
             Given::Linkage(file) => {
                 let found = own_curve(&file.linkage);

@@ -43,7 +43,7 @@ pub use four_bar::{
     Toggle, VectorLoop,
 };
 pub use inverted_slider_crank::{InvertedSliderCrank, InvertedSliderCrankParameters};
-pub use one_loop::{LoopJoints, LoopKind, LoopMobility, OneLoop};
+pub use one_loop::{LinkageKeys, LoopJoints, LoopKind, LoopMobility, NoLinkage, OneLoop};
 pub use slider::{SliderJoints, SliderLinkage, SliderPosition};
 pub use slider_crank::{SliderCrank, SliderCrankParameters};
 pub use unit::Unit;

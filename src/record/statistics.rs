@@ -11,7 +11,7 @@ use serde::Serialize;
 pub const WITHIN: f64 = 1e-6;
 
 /// The errors of an answer of a motion, beside the sum of squared distances of its places; or of a function, whose errors
-/// are all of the output in degrees.
+/// are all of the output: in degrees, or lengths of a slider's place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MotionErrors {
     /// The figure that answers of a motion are compared by: sum_j w_j (|T_j - P_j|^2 + (W dtheta_j)^2) with the weights
@@ -19,8 +19,10 @@ pub struct MotionErrors {
     pub objective: f64,
     /// The root of the mean squared distance of the places.
     pub rms: f64,
-    /// The root of the mean squared error of the body's angle, over the poses that give one, degrees.
-    pub rms_deg: f64,
+    /// The root of the mean squared error of the body's angle, over the poses that give one, or of the output, degrees; `None`
+    /// where the output is a place.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rms_deg: Option<f64>,
 }
 
 /// The results of one run: one problem, one method, one seed.
@@ -229,7 +231,7 @@ mod tests {
     #[test]
     fn runs_of_a_motion_are_compared_by_their_objective() {
         let of = |seed: u64, sum_sq: f64, objective: f64| Run {
-            motion: Some(MotionErrors { objective, rms: 0.5, rms_deg: 0.25 }),
+            motion: Some(MotionErrors { objective, rms: 0.5, rms_deg: Some(0.25) }),
             ..run(seed, true, sum_sq)
         };
         let summary = Summary::of(&[of(1, 0.1, 4.0), of(2, 0.3, 2.0), of(3, 0.2, 3.0)], &BAR);
@@ -247,7 +249,7 @@ mod tests {
             keys.filter(|key| ["objective", "rms", "rms_deg", "motion"].contains(&key.as_str())).count()
         };
         let path = run(1, true, 2.0);
-        let motion = Some(MotionErrors { objective: 4.0, rms: 0.5, rms_deg: 0.25 });
+        let motion = Some(MotionErrors { objective: 4.0, rms: 0.5, rms_deg: Some(0.25) });
         assert_eq!((keys(&path), keys(&Run { motion, ..path })), (0, 3));
     }
 

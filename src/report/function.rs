@@ -95,10 +95,10 @@ pub(super) fn chart_svg(record: &Record, candidate: &Candidate) -> Option<String
     let mut canvas = Canvas::default();
     let height = charts(&mut canvas, record, candidate, Area { x: 0.0, y: 0.0, width: WIDTH, height: 0.0 })?;
     let title = format!("{}: the function", words::standing(record, candidate));
-    let (task, unit) = (&record.problem.resolved.task, words::error_unit(record));
+    let unit = words::error_unit(record);
     let description = format!(
         "the {} over the crank's angle, wanted and generated; errors {}{unit} rms, {}{unit} at most",
-        output::of(task, candidate),
+        output::of(candidate),
         super::text::significant(candidate.error.rms, 4),
         super::text::significant(candidate.error.max, 4)
     );

@@ -4,7 +4,7 @@ use super::text::{brief, significant};
 use crate::mechanism::LoopKind;
 use crate::record::{Candidate, Record};
 use crate::task::Sense;
-use crate::task::spec::{ProblemSpec, TaskSpec};
+use crate::task::spec::ProblemSpec;
 
 /// Returns the name of the unit of lengths, `length` without one.
 pub(super) fn length_name(record: &Record) -> String {
@@ -35,13 +35,9 @@ fn link_of(kind: LoopKind, is_of_places: bool) -> &'static str {
 }
 
 /// Returns the output of a candidate of a function: `follower's angle`, `slider's place`.
-pub(super) fn of(task: &TaskSpec, candidate: &Candidate) -> String {
-    let link = link_of(candidate.linkage.kind(), task.is_of_places());
-    match (link, task.is_of_places()) {
-        ("rod", _) => "rod's place in the block".to_owned(),
-        (link, true) => format!("{link}'s place"),
-        (link, false) => format!("{link}'s angle"),
-    }
+pub(super) fn of(candidate: &Candidate) -> String {
+    let what = if candidate.output_offset.is_some() { "place" } else { "angle" };
+    format!("{}'s {what}", own_link(candidate))
 }
 
 /// Returns the title of a chart of the outputs of a candidate.
@@ -52,6 +48,11 @@ pub(super) fn title(candidate: &Candidate) -> &'static str {
         (LoopKind::InvertedSliderCrank, true) => "Rod",
         (LoopKind::InvertedSliderCrank, false) => "Block",
     }
+}
+
+/// Returns the name of the output link of a candidate.
+fn own_link(candidate: &Candidate) -> &'static str {
+    link_of(candidate.linkage.kind(), candidate.output_offset.is_some())
 }
 
 /// Returns the starting angles of a function's links, with the ranges that are free: `the crank from 31.8° and the follower
@@ -70,7 +71,7 @@ pub(super) fn offsets(candidate: &Candidate, unit: &str) -> Option<String> {
         range.map_or_else(String::new, |range| format!(" through {}°", significant(range, 6)))
     };
     let [of_crank, of_follower] = [candidate.input_range_deg, candidate.output_range_deg].map(through);
-    let link = link_of(candidate.linkage.kind(), false);
+    let link = own_link(candidate);
     Some(format!(
         "from the line A-B, the crank from {input}°{of_crank} and the {link} from {output}°{of_follower}, in {sense}"
     ))
@@ -101,21 +102,18 @@ fn offsets_of_places(candidate: &Candidate, place: f64, unit: &str) -> String {
 /// Returns where the output link of a function starts: `follower from 61.5°, counter-clockwise as its outputs rise`.
 pub(super) fn starts_from(candidate: &Candidate, unit: &str) -> Option<String> {
     if let Some(place) = candidate.output_offset {
-        let (place, is_opposite) = (brief(place, 5), candidate.sense? == Sense::Opposite);
-        return Some(match (candidate.linkage.kind(), is_opposite) {
-            (LoopKind::InvertedSliderCrank, false) => format!("block from {place}{unit} along the rod"),
-            (LoopKind::InvertedSliderCrank, true) => format!("block from {place}{unit} back along the rod"),
-            (_, false) => format!("slider from {place}{unit} along the line"),
-            (_, true) => format!("slider from {place}{unit} against the line"),
-        });
+        let way = match (candidate.linkage.kind(), candidate.sense? == Sense::Opposite) {
+            (LoopKind::InvertedSliderCrank, false) => "block from C along the rod",
+            (LoopKind::InvertedSliderCrank, true) => "block from C back along the rod",
+            (_, false) => "slider along its line",
+            (_, true) => "slider against its line",
+        };
+        return Some(format!("{way} from {}{unit}", brief(place, 5)));
     }
     let from = candidate.output_offset_deg? + candidate.linkage.ground_angle().to_degrees();
     let way = if candidate.sense? == Sense::Opposite { "clockwise" } else { "counter-clockwise" };
     let through =
         candidate.output_range_deg.map_or_else(String::new, |range| format!(" through {}°", brief(range, 5)));
-    let link = match candidate.linkage.kind() {
-        LoopKind::FourBar => "follower",
-        LoopKind::SliderCrank | LoopKind::InvertedSliderCrank => "block",
-    };
+    let link = own_link(candidate);
     Some(format!("{link} from {}°{through}, {way} as outputs rise", brief(from, 5)))
 }

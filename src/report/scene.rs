@@ -57,7 +57,7 @@ impl Scene {
                     candidate.frame_deg,
                     SAMPLES,
                 );
-                let pins = follower_pins(record, candidate);
+                let pins = output_pins(record, candidate);
                 if pins.is_empty() { scene } else { Scene { targets: pins, ..scene } }
             }
         }
@@ -140,50 +140,40 @@ fn targets(
     usable.map(target).collect()
 }
 
-/// Returns the places of the follower's pin at the outputs that are wanted of a function, each with its place at the one
-/// generated; none for another task.
-fn follower_pins(record: &Record, candidate: &Candidate) -> Vec<Target> {
-    if let Some(targets) = slider_pins(record, candidate) {
-        return targets;
-    }
-    let (Some(linkage), Some(offset), Some(sense)) =
-        (candidate.linkage.four_bar(), candidate.output_offset_deg, candidate.sense)
-    else {
-        return Vec::new();
-    };
+/// Returns the places of the follower's or the slider's pin at the outputs that are wanted of a function, each with its place at
+/// the one generated; none for another task, or for a block, which has no pin that its output moves.
+fn output_pins(record: &Record, candidate: &Candidate) -> Vec<Target> {
+    let Some(at) = output_pin(candidate) else { return Vec::new() };
     let pairs = function::pairs(&record.problem.resolved.task, candidate);
-    let at = |output: f64| {
-        let angle = linkage.ground_angle() + (offset + sense.signs()[0] * output).to_radians();
-        linkage.follower_pivot() + Complex::from_polar(linkage.follower(), angle)
-    };
     let target = |(index, pair): (usize, &function::GeneratedPair)| Target {
         index,
         at: at(pair.wanted),
-        reached: pair.generated.map(at),
+        reached: pair.generated.map(&at),
         angle: None,
         reached_angle: None,
     };
     pairs.iter().enumerate().map(target).collect()
 }
 
-/// Returns the places of a slider-crank's slider at the outputs that are wanted, each with the one generated; `None` for
-/// another task or kind.
-fn slider_pins(record: &Record, candidate: &Candidate) -> Option<Vec<Target>> {
-    let linkage = candidate.linkage.slider_crank()?;
-    let (offset, sign) = (candidate.output_offset?, candidate.sense?.signs()[0]);
-    let along = linkage.line_direction();
-    let foot =
-        linkage.line_point() + along * dot(candidate.linkage.crank_pivot() - linkage.line_point(), along);
-    let at = |output: f64| foot + along * (sign * (offset + output));
-    let target = |(index, pair): (usize, &function::GeneratedPair)| Target {
-        index,
-        at: at(pair.wanted),
-        reached: pair.generated.map(at),
-        angle: None,
-        reached_angle: None,
-    };
-    let pairs = function::pairs(&record.problem.resolved.task, candidate);
-    Some(pairs.iter().enumerate().map(target).collect())
+/// Returns the place of the output link's pin at an output.
+fn output_pin(candidate: &Candidate) -> Option<Box<dyn Fn(f64) -> Complex + '_>> {
+    let sign = candidate.sense?.signs()[0];
+    let (pivot, ground_angle) = (candidate.linkage.crank_pivot(), candidate.linkage.ground_angle());
+    match &candidate.linkage {
+        OneLoop::FourBar(linkage) => {
+            let offset = candidate.output_offset_deg?;
+            Some(Box::new(move |output| {
+                let angle = ground_angle + (offset + sign * output).to_radians();
+                linkage.follower_pivot() + Complex::from_polar(linkage.follower(), angle)
+            }))
+        }
+        OneLoop::SliderCrank(linkage) => {
+            let (offset, along) = (candidate.output_offset?, linkage.line_direction());
+            let foot = linkage.line_point() + along * dot(pivot - linkage.line_point(), along);
+            Some(Box::new(move |output| foot + along * (sign * (offset + output))))
+        }
+        OneLoop::InvertedSliderCrank(_) => None,
+    }
 }
 
 /// Returns the crank angle (radians) and assembly at each point that has both.

@@ -39,6 +39,11 @@ const WHAT_OF_FUNCTIONS: &str = "objective: the least one of all seeds, the sum 
     of the follower's angle, in degrees squared; median: of the accepted answers of all seeds; hits: seeds whose answer is \
     accepted and reaches the best known objective within 1e-6 of it; rms deg: the root of the mean squared error of the \
     best answer, degrees; evaluations: of the objective, median.";
+const PLACES: &str = "Functions: an angle turned into a slider's place";
+const WHAT_OF_PLACES: &str = "objective: the least one of all seeds, the sum over the pairs of weight times squared error \
+    of the place; median: of the accepted answers of all seeds; hits: seeds whose answer is accepted and reaches the best \
+    known objective within 1e-6 of it (where that is 0: up to rounding); rms: the root of the mean squared error of the best \
+    answer; evaluations: of the objective, median.";
 const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as printed (where that could be \
     read in the source) and by our referee; genetic, diff. evolution: their median sum over accepted answers, \
     after as many evaluations as the search above used in the median, and how many seeds had one.";
@@ -163,14 +168,21 @@ struct Section<'a> {
     meaning: &'static str,
     /// The word for their targets.
     nouns: &'static str,
-    /// Whether they have errors of places too.
-    has_places: bool,
+    /// The errors that they have.
+    shown: Errors,
+}
+
+/// The columns of errors in a table of answers.
+#[derive(Clone, Copy)]
+struct Errors {
+    of_places: bool,
+    of_angles: bool,
 }
 
 impl Section<'_> {
     /// Returns the table of the answers, that of the population searches beside them if there are any, and that of the effort.
     fn tables(&self) -> Vec<Grid> {
-        let mut tables = vec![answers_of_motions(&self.problems, self.has_places)];
+        let mut tables = vec![answers_of_motions(&self.problems, self.shown)];
         tables.extend(self.has_populations().then(|| beside_objectives(&self.problems)));
         tables.push(effort(&self.problems, self.nouns));
         tables
@@ -191,16 +203,30 @@ fn sections<'a>(
         heading: MOTIONS,
         meaning: WHAT_OF_MOTIONS,
         nouns: "poses",
-        has_places: true,
+        shown: Errors { of_places: true, of_angles: true },
     };
+    let (places, functions) = functions.into_iter().partition(|problem| is_of_places(problem));
     let functions = Section {
         problems: functions,
         heading: FUNCTIONS,
         meaning: WHAT_OF_FUNCTIONS,
         nouns: "pairs",
-        has_places: false,
+        shown: Errors { of_places: false, of_angles: true },
     };
-    [motions, functions].into_iter().filter(|section| !section.problems.is_empty())
+    let places = Section {
+        problems: places,
+        heading: PLACES,
+        meaning: WHAT_OF_PLACES,
+        nouns: "pairs",
+        shown: Errors { of_places: true, of_angles: false },
+    };
+    [motions, functions, places].into_iter().filter(|section| !section.problems.is_empty())
+}
+
+/// Returns whether the outputs of a function are places.
+fn is_of_places(problem: &ProblemResult) -> bool {
+    let best = problem.search.summary.best.as_ref();
+    best.and_then(|best| best.motion).is_some_and(|errors| errors.rms_deg.is_none())
 }
 
 /// Returns whether certificates were asked for.
@@ -295,8 +321,10 @@ fn answers(problems: &[&ProblemResult]) -> Grid {
     Grid::of(problems, if is_certified(problems) { &columns } else { &columns[..9] })
 }
 
-/// Returns the table of the answers of motions, with errors of their places; or of functions, which have none.
-fn answers_of_motions(problems: &[&ProblemResult], with_places: bool) -> Grid {
+/// Returns the table of the answers of motions or of functions, with the errors that they have.
+fn answers_of_motions(problems: &[&ProblemResult], shown: Errors) -> Grid {
+    const OF_PLACES: usize = 5;
+    const OF_ANGLES: usize = 6;
     let best = |p: &ProblemResult, of: fn(&MotionErrors) -> f64| {
         p.search.summary.best.as_ref().and_then(|best| best.motion.as_ref()).map(of)
     };
@@ -310,10 +338,10 @@ fn answers_of_motions(problems: &[&ProblemResult], with_places: bool) -> Grid {
         (Right, "median", &|p| objective(p, p.search.summary.median_objective)),
         (Right, "hits", &|p| hits(p)),
         (Right, "rms", &|p| number(best(p, |errors| errors.rms), 4)),
-        (Right, "rms deg", &|p| number(best(p, |errors| errors.rms_deg), 4)),
+        (Right, "rms deg", &|p| number(best(p, |errors| errors.rms_deg.unwrap_or(f64::NAN)), 4)),
     ];
-    const PLACES: usize = 5;
-    let shown = columns.iter().enumerate().filter(|(i, _)| with_places || *i != PLACES);
+    let is_shown = |i: usize| (i != OF_PLACES || shown.of_places) && (i != OF_ANGLES || shown.of_angles);
+    let shown = columns.iter().enumerate().filter(|(i, _)| is_shown(*i));
     Grid::of(problems, &shown.map(|(_, column)| *column).collect::<Vec<_>>())
 }
 

@@ -56,8 +56,8 @@ pub mod sliders {
     use super::{Effort, Stopping};
     /// Rounds that run in parallel before any is read.
     pub const BATCH: u64 = 4;
-    /// Batches that run before any search for four-bars, and before the whole one: an exact answer of theirs makes it needless.
-    /// Where there is none a batch takes four times as long as a search that finds one, so the first look is short.
+    /// Batches that run before any search for four-bars, few since a batch without an exact answer takes four times as long as
+    /// one with it; and before the whole search, which such an answer makes needless.
     pub const FIRST: u64 = 1;
     pub const GLIMPSE: u64 = 6;
     /// Shapes drawn in a round, the part of them whose crank turns fully, those fitted for a few steps, and to convergence.
@@ -67,6 +67,8 @@ pub mod sliders {
     pub const LONG: usize = 2;
     pub const SHORT_FIT: Effort = Effort::of(15, 2);
     pub const LONG_FIT: Effort = Effort::of(200, 12);
+    /// The mean square of the errors, in sizes of the target, below which a fit that has ended is led on to its last digits.
+    pub const NEARLY: f64 = 1e-10;
     /// The part of their size by which the unknowns of starts that are fitted to convergence differ.
     pub const APART: f64 = 0.1;
     /// Of a motion: sets of four poses whose slider is taken in a round, and lines that are drawn.

@@ -5,12 +5,12 @@ use super::{Budget, Context};
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, InputRange};
+use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, InputRange, LoopJoints, OneLoop};
 use crate::task::forms::design_space::Shape;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::timed::TimedPathFit;
 use crate::task::forms::torus::Positions;
-use crate::task::{AngleOffset, Problem, Setting, Timing};
+use crate::task::{AngleOffset, Body, Problem, Setting, Timing};
 use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
@@ -19,11 +19,19 @@ use std::sync::atomic::AtomicBool;
 /// Free timing: the nearest point of the circuit that the linkage's own t1 is on (of a rocking Grashof linkage the
 /// better of its two circuits). Prescribed timing: the prescribed angles, with the offset and the direction that give
 /// the least sum of squares if they are free, on the linkage's own t1.
-pub fn nearest_positions(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+///
+/// Partly timed targets are met by four-bars alone.
+pub fn nearest_positions(
+    problem: &Problem,
+    linkage: impl Into<OneLoop>,
+) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+    let linkage = &linkage.into();
     match problem.task().timing() {
         Timing::Free if problem.task().body().is_some() => of_body(problem, linkage),
         Timing::Free => free(problem, linkage),
-        Timing::Prescribed { .. } if problem.task().is_partly_timed() => partly_timed(problem, linkage),
+        Timing::Prescribed { .. } if problem.task().is_partly_timed() => {
+            partly_timed(problem, linkage.four_bar()?)
+        }
         Timing::Prescribed { offset, .. } => prescribed(problem, linkage, *offset),
     }
 }
@@ -52,7 +60,7 @@ fn partly_timed(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<A
     }
     let whole = Problem::new(spec).ok()?;
     let Timing::Prescribed { offset, .. } = whole.task().timing() else { return None };
-    let (crank_deg, _) = prescribed(&whole, linkage, *offset)?;
+    let (crank_deg, _) = prescribed(&whole, &linkage.into(), *offset)?;
     let written = &problem.spec().task.timing.as_ref()?.crank_deg;
     let steps = (crank_deg[crank_deg.len() - 1] - crank_deg[0])
         * (written[*timed.last()?] - written[*timed.first()?]);
@@ -91,7 +99,7 @@ fn partly_timed(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<A
 }
 
 /// Returns a crank angle on each circuit that the linkage's own t1 can be on.
-fn on_circuits(linkage: &FourBar) -> Vec<f64> {
+fn on_circuits(linkage: &OneLoop) -> Vec<f64> {
     match linkage.mobility().input {
         InputRange::None => Vec::new(),
         InputRange::Full => vec![linkage.ground_angle()],
@@ -100,57 +108,76 @@ fn on_circuits(linkage: &FourBar) -> Vec<f64> {
     }
 }
 
-/// A place on a circuit: the crank angle and the assembly.
-type Place = (f64, AssemblyMode);
-/// The coupler point and the coupler's direction (radians) at a place.
-type Sample = (Complex, f64, Place);
+/// The coupler at a place of a circuit.
+struct Sample {
+    /// The parameter of the place on the circuit.
+    parameter: f64,
+    point: Complex,
+    /// The coupler's direction, radians.
+    direction: f64,
+}
+
+impl Sample {
+    fn of(linkage: &OneLoop, curve: &CouplerCurve<OneLoop>, parameter: f64) -> Option<Sample> {
+        let (angle, assembly) = curve.position_at(parameter);
+        let LoopJoints { joints, coupler } = linkage.joints_with(angle, assembly)?;
+        Some(Sample { parameter, point: joints.coupler_point, direction: coupler.arg() })
+    }
+
+    /// Returns the square of the distance from target j, the turn of a body with a frame included.
+    fn off(&self, problem: &Problem, j: usize, frame: f64) -> f64 {
+        let task = problem.task();
+        let turned = |body: &Body| {
+            let angle = body.angles[j].map_or(0.0, |angle| wrapped(angle - self.direction - frame));
+            (body.angle_weight * angle).powi(2)
+        };
+        (task.points()[j] - self.point).norm_sqr() + task.body().map_or(0.0, turned)
+    }
+}
 
 /// Places of the circuit at which a body is tried to lie at the first target.
 const TRIED: usize = 48;
 
 /// As [`free`] for a body that is fixed to the coupler in the way that gives the least errors: at several places of the
 /// circuit the body is taken to lie as at the first target with an angle; the best of these is fitted.
-fn of_body(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+fn of_body(problem: &Problem, linkage: &OneLoop) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let task = problem.task();
-    let body = task.body()?;
-    let first = body.angles.iter().flatten().next()?;
-    let mut best: Option<(f64, f64, Vec<Place>)> = None;
+    let first = task.body()?.angles.iter().flatten().next()?;
+    let mut best: Option<(f64, f64, f64, Vec<f64>)> = None;
     for start in on_circuits(linkage) {
         let curve = CouplerCurve::through(linkage, start, linkage.assembly(), DEFAULT_SAMPLES);
-        let samples: Vec<Sample> = (0..DEFAULT_SAMPLES)
-            .filter_map(|i| {
-                let at = curve.position_at(TAU * i as f64 / DEFAULT_SAMPLES as f64);
-                let joints = linkage.position_with(at.0, at.1).joints()?;
-                Some((joints.coupler_point, (joints.follower_pin - joints.crank_pin).arg(), at))
-            })
-            .collect();
-        for (_, coupler, _) in samples.iter().step_by(DEFAULT_SAMPLES / TRIED) {
-            let frame = first - coupler;
+        let parameters = (0..DEFAULT_SAMPLES).map(|i| TAU * i as f64 / DEFAULT_SAMPLES as f64);
+        let samples: Vec<Sample> = parameters.filter_map(|t| Sample::of(linkage, &curve, t)).collect();
+        for tried in samples.iter().step_by(DEFAULT_SAMPLES / TRIED) {
+            let frame = first - tried.direction;
             let (mut sum, mut places) = (0.0, Vec::with_capacity(task.len()));
-            for (j, target) in task.points().iter().enumerate() {
-                let off = |(point, coupler, _): &&Sample| {
-                    let turned = body.angles[j].map_or(0.0, |angle| wrapped(angle - coupler - frame));
-                    (target - point).norm_sqr() + (body.angle_weight * turned).powi(2)
-                };
+            for j in 0..task.len() {
+                let off = |sample: &&Sample| sample.off(problem, j, frame);
                 let nearest = samples.iter().min_by(|one, other| off(one).total_cmp(&off(other)))?;
                 sum += task.weights()[j] * off(&nearest);
-                places.push(nearest.2);
+                places.push(nearest.parameter);
             }
             if best.as_ref().is_none_or(|(least, ..)| sum < *least) {
-                best = Some((sum, frame, places));
+                best = Some((sum, start, frame, places));
             }
         }
     }
-    let (_, frame, places) = best?;
-    let shape = Shape::from(linkage);
-    let position = |(angle, assembly): &Place| {
-        let joints = linkage.position_with(*angle, *assembly).joints()?;
-        let coupler = (joints.follower_pin - joints.crank_pin) / shape.coupler;
-        Some([Complex::from_polar(1.0, *angle), coupler])
+    let (_, start, frame, parameters) = best?;
+    let curve = CouplerCurve::through(linkage, start, linkage.assembly(), DEFAULT_SAMPLES);
+    let Some(four_bar) = linkage.four_bar() else {
+        return led_along(problem, linkage, &curve, frame, parameters);
     };
-    let positions: Option<Positions> = places.iter().map(position).collect();
-    let setting = Setting { aim: None, assembly: linkage.assembly(), direction: 1.0, side: linkage.side() };
-    let design = problem.space(linkage.side()).coordinates(&shape, frame);
+    let shape = Shape::from(four_bar);
+    let position = |parameter: &f64| {
+        let (angle, assembly) = curve.position_at(*parameter);
+        let joints = four_bar.position_with(angle, assembly).joints()?;
+        let coupler = (joints.follower_pin - joints.crank_pin) / shape.coupler;
+        Some([Complex::from_polar(1.0, angle), coupler])
+    };
+    let positions: Option<Positions> = parameters.iter().map(position).collect();
+    let side = four_bar.side();
+    let setting = Setting { aim: None, assembly: four_bar.assembly(), direction: 1.0, side };
+    let design = problem.space(side).coordinates(&shape, frame);
     let budget = Budget::new(&NEVER, None);
     let fitted = settle_positions(Context::new(problem, &budget), &design, setting, positions?)?;
     let angles = fitted.iter().map(|[e, _]| e.arg()).collect();
@@ -158,10 +185,52 @@ fn of_body(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<Assemb
     Some(unwrapped(problem, linkage, angles, assemblies))
 }
 
+/// The most times that places and frame are fitted in turn, and the change of the frame (radians) below which they stay.
+const IN_TURN: usize = 200;
+const SETTLED: f64 = 1e-13;
+
+/// Leads the places at the targets along the circuit to those that are nearest, and the frame of the body to the mean of its
+/// angles there, in turn.
+fn led_along(
+    problem: &Problem,
+    linkage: &OneLoop,
+    curve: &CouplerCurve<OneLoop>,
+    mut frame: f64,
+    mut parameters: Vec<f64>,
+) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+    let (task, body) = (problem.task(), problem.task().body()?);
+    let step = TAU / DEFAULT_SAMPLES as f64;
+    let off = |j: usize, frame: f64, t: f64| {
+        Sample::of(linkage, curve, t).map_or(f64::INFINITY, |sample| sample.off(problem, j, frame))
+    };
+    for _ in 0..IN_TURN {
+        for (j, t) in parameters.iter_mut().enumerate() {
+            let led = least_between((*t - step, *t + step), THIRDS, |t| off(j, frame, t));
+            if off(j, frame, led) < off(j, frame, *t) {
+                *t = led;
+            }
+        }
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (j, t) in parameters.iter().enumerate() {
+            let Some(angle) = body.angles[j] else { continue };
+            let sample = Sample::of(linkage, curve, *t)?;
+            sum += task.weights()[j] * wrapped(angle - sample.direction - frame);
+            weights += task.weights()[j];
+        }
+        let turned = sum / weights;
+        frame += turned;
+        if turned.abs() < SETTLED {
+            break;
+        }
+    }
+    let (angles, assemblies) = parameters.iter().map(|t| curve.position_at(*t)).unzip();
+    Some(unwrapped(problem, linkage, angles, assemblies))
+}
+
 /// A search that nothing cancels.
 static NEVER: AtomicBool = AtomicBool::new(false);
 
-fn free(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+fn free(problem: &Problem, linkage: &OneLoop) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let on_circuit = |start: f64| {
         let curve = CouplerCurve::through(linkage, start, linkage.assembly(), DEFAULT_SAMPLES);
         let mut sum = 0.0;
@@ -193,7 +262,7 @@ const THIRDS: usize = 100;
 
 fn prescribed(
     problem: &Problem,
-    linkage: &FourBar,
+    linkage: &OneLoop,
     offset: AngleOffset,
 ) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let written = &problem.spec().task.timing.as_ref()?.crank_deg;
@@ -235,7 +304,7 @@ impl Placed {
 /// A linkage at prescribed crank angles.
 struct Prescribed<'a> {
     problem: &'a Problem,
-    linkage: &'a FourBar,
+    linkage: &'a OneLoop,
     written: &'a [f64],
     assemblies: Vec<AssemblyMode>,
     /// The angle that is added to those written, degrees; `None`: any.

@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | `body` | the angles of a link that a task asks for: of a body in a motion, or the outputs of a function |
 //! | [`builder`] | a builder of problems from points, with the defaults of a problem file |
 //! | [`defect`] | defects of a motion through target points: order, branch, circuit |
 //! | [`forms`] | the task as mathematics: design space, residuals with derivatives, requirements, fitness |
@@ -16,9 +17,11 @@
 //! | [`similarity`] | similarities that map the axes to themselves and renumberings of a path's points, of a whole problem |
 //! | [`spec`] | the problem as data: every key of a problem file with its default filled in |
 //! | `task_spec` | the task as data: a list of targets, written as `path`, as `motion` or as `function` |
-//! | `targets` | the synthesis task: a list of targets for the coupler point and, in poses, for the angle of the body, or for the angle of the follower, with or without crank angles |
+//! | `targets` | the synthesis task: a list of targets for the coupler point and, in poses, for the angle of the body, or for the outputs of a function, with or without crank angles |
+//! | [`without_sliders`] | reasons why linkages with a slider are not searched for in a problem |
 //! | `values` | the value types of TOML files, with errors in a designer's words |
 
+mod body;
 mod builder;
 pub mod defect;
 pub mod forms;
@@ -35,13 +38,12 @@ pub mod spec;
 mod targets;
 mod task_spec;
 pub(crate) mod values;
+pub mod without_sliders;
 
+pub use body::{Body, Link, Output, Sense, best_frame};
 pub use builder::ProblemBuilder;
 pub use defect::Defect;
 pub use kind::TaskKind;
 pub use problem::{Problem, Setting};
 pub(crate) use targets::corners;
-pub use targets::{
-    AngleOffset, Body, Link, Output, Return, SMALLEST_SIZE, Sense, Task, TaskError, TaskOptions, Timing,
-    best_frame,
-};
+pub use targets::{AngleOffset, Return, SMALLEST_SIZE, Task, TaskError, TaskOptions, Timing};

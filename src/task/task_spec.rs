@@ -2,7 +2,7 @@
 //!
 //! A target says where the coupler point is to be and, in a motion, how the body is to lie there; the crank angles are
 //! given or free. Files and records call a list without body angles `path` and one with them `motion`. A `function` has no
-//! places: its targets are angles of the follower at given crank angles.
+//! points: its targets are outputs, angles of the follower or places of a slider, at given crank angles.
 
 use crate::task::ranges::{Ranges, RangesSpec};
 use crate::task::resampling::{resample, smooth};
@@ -36,7 +36,7 @@ pub struct TaskSpec {
 /// The outputs of a function: what they are, their reference and sense, and the formula that gave them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputSpec {
-    /// Angles, or places of a slider: these stand for degrees in the body.
+    /// The quantity: angles, or places of a slider, which are written as degrees in the body.
     pub output: Output,
     /// Their reference: free, or the ground line.
     pub offset: AngleOffset,

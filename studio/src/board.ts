@@ -8,7 +8,7 @@ import type { Joint, Pose } from "./grab";
 import { more } from "./kit";
 import { unitAfter } from "./labels";
 import { pointShapes } from "./marks";
-import type { Box, Point, Task } from "./messages";
+import { type Box, fourBarOf, type Point, type Task } from "./messages";
 import { Overview } from "./overview";
 import { watchPointers } from "./pointers";
 import type { Hand, Surface, Tool } from "./surface";
@@ -319,11 +319,12 @@ export class Board implements Surface {
     setAll(this.ghost, { x: px(x - (w * by) / 2), y: px(y - (h * by) / 2), width: px(w * by), height: px(h * by) });
   }
 
-  /** Where the joints stand now. */
+  /** Where the joints of a four-bar stand now. */
   get standing(): Pose | null {
     const joints = this.moving?.cycle.at(this.moving.at(this.part));
-    if (!this.moving || !joints) return null;
-    const { A, B } = this.moving.shown.linkage;
+    const linkage = this.moving && fourBarOf(this.moving.shown.linkage);
+    if (!linkage || !joints) return null;
+    const { A, B } = linkage;
     return { A, B, C: joints.C as Point, D: joints.D as Point, P: joints.P as Point };
   }
 

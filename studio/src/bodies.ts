@@ -1,7 +1,7 @@
 // The body of a motion on the board: a frame at each pose with a handle that turns it, its outline where there is one, where
 // the linkage takes it, and the body that moves along with the coupler. The long arm of a frame is the body's x axis.
 
-import { bodyPoses, CORNERS } from "../../src/report/html/player/body.mjs";
+import { bodyDeg, bodyPoses, CORNERS } from "../../src/report/html/player/body.mjs";
 import { pathThrough, px, setAll, shape } from "../../src/report/html/player/svg.mjs";
 import type { Board } from "./board";
 import type { Point, Task } from "./messages";
@@ -179,8 +179,6 @@ export class Bodies {
     const joints = moving?.cycle.at(moving.at(part));
     const frame = moving?.shown.frame_deg;
     if (!joints || frame === undefined) return setAll(this.now, { d: "" });
-    const { C, D, P } = joints as { C: Point; D: Point; P: Point };
-    const deg = Math.atan2(D[1] - C[1], D[0] - C[0]) * DEGREES + frame;
-    return setAll(this.now, { d: this.lines(task, this.board.toPixel(P), deg) });
+    return setAll(this.now, { d: this.lines(task, this.board.toPixel(joints.P as Point), bodyDeg(joints, frame)) });
   }
 }

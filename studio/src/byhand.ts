@@ -15,7 +15,7 @@ import {
   type Pose,
   roundedTo,
 } from "./grab";
-import type { Shown, Solution, Task } from "./messages";
+import { fourBarOf, type Shown, type Solution, type Task } from "./messages";
 import { inWords } from "./strip";
 import { sizeOf } from "./task";
 import { nearnessInWords, SIGNS, transmissionInWords } from "./words";
@@ -97,9 +97,9 @@ export class ByHand {
         ? (element("input", { type: "number", min: "0", step: "any", "aria-label": NAMES[name] }) as HTMLInputElement)
         : null;
       field?.addEventListener("change", () => {
-        if (!this.shown || !(field.valueAsNumber > 0)) return this.show();
+        if (!this.linkage || !(field.valueAsNumber > 0)) return this.show();
         this.host.note();
-        return this.ask({ ...this.shown.linkage, [name]: field.valueAsNumber });
+        return this.ask({ ...this.linkage, [name]: field.valueAsNumber });
       });
       const figures = field ?? element("span", { "data-figures": name });
       this.rows.set(name, { field, lock });
@@ -109,6 +109,11 @@ export class ByHand {
         element("td", {}, [lock]),
       ]);
     });
+  }
+
+  /** The four-bar in the hand: no other kind is taken. */
+  private get linkage(): Linkage | null {
+    return this.shown && fourBarOf(this.shown.linkage);
   }
 
   /** Takes a linkage into the hand; null lets it go. */
@@ -133,7 +138,7 @@ export class ByHand {
 
   /** The target or what is asked has changed: it is judged anew. */
   again() {
-    if (this.shown) this.ask(this.shown.linkage);
+    if (this.linkage) this.ask(this.linkage);
   }
 
   /** Asks the studio what it makes of a linkage; of several that wait the latest counts. */
@@ -164,15 +169,15 @@ export class ByHand {
   }
 
   private toHalves() {
-    if (!this.shown) return;
+    if (!this.linkage) return;
     this.host.note();
-    this.ask(roundedTo(this.shown.linkage, HALVES[this.host.task().unit ?? "mm"], this.locks));
+    this.ask(roundedTo(this.linkage, HALVES[this.host.task().unit ?? "mm"], this.locks));
   }
 
   private fit() {
-    if (!this.shown) return;
+    const { linkage } = this;
+    if (!linkage) return;
     if (this.locks.size === 0) return this.host.say("Lock what is to stay: the rest is fitted again around it.");
-    const { linkage } = this.shown;
     const kept = keptBy(linkage, this.locks);
     this.host.note();
     this.take(null);
@@ -180,9 +185,9 @@ export class ByHand {
   }
 
   private show() {
-    const { shown } = this;
+    const { shown, linkage } = this;
     this.place.hidden = !shown;
-    if (!shown) return;
+    if (!shown || !linkage) return;
     const { unit, points } = this.host.task();
     this.title.textContent = this.isChanged ? "Changed by hand" : "In your hand";
     this.round.textContent = unit === "in" ? "Round to 1/64 in" : "Round to 0.5 mm";
@@ -192,11 +197,10 @@ export class ByHand {
       element("span", {}, [`${shown.type}; ${inWords(shown)}`]),
     );
     for (const [name, { field }] of this.rows) {
-      if (field && document.activeElement !== field)
-        field.value = String(Number(shown.linkage[name as "a"].toPrecision(5)));
+      if (field && document.activeElement !== field) field.value = String(Number(linkage[name as "a"].toPrecision(5)));
     }
     for (const span of this.place.querySelectorAll<HTMLElement>("[data-figures]"))
-      span.textContent = figuresOf(shown.linkage, span.dataset.figures as Lock);
+      span.textContent = figuresOf(linkage, span.dataset.figures as Lock);
   }
 
   solution(): Solution | null {

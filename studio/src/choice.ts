@@ -1,6 +1,6 @@
 // Which linkage is meant: one that is pinned, or one of the candidates, which move and change their places.
 
-import type { Shown, Solution } from "./messages";
+import { type Linkage, pivotsOf, type Shown, type Solution } from "./messages";
 
 /** None: the best candidate, whichever that is. */
 export type Choice = { pin: Solution } | { candidate: Shown } | null;
@@ -10,10 +10,11 @@ const ANOTHER = 0.3;
 
 /** How unlike two linkages are, in parts of their size. */
 function unlike({ linkage: p }: Shown, { linkage: q }: Shown): number {
-  if (p.t1 !== q.t1 || p.t2 !== q.t2) return Infinity;
-  const numbers = ({ A, B, a, b, c, d, e }: Shown["linkage"]) => [...A, ...B, a, b, c, d, e];
+  if (p.kind !== q.kind || p.t1 !== q.t1 || p.t2 !== q.t2) return Infinity;
+  const numbers = ({ kind: _k, t1: _1, t2: _2, ...rest }: Linkage) => Object.values(rest).flat() as number[];
   const [ps, qs] = [numbers(p), numbers(q)];
-  const size = Math.max(Math.hypot(p.B[0] - p.A[0], p.B[1] - p.A[1]), Math.abs(p.a), Math.abs(p.b), Math.abs(p.c));
+  const [[x, y], [x2, y2] = [x, y]] = pivotsOf(p);
+  const size = Math.max(Math.hypot(x2 - x, y2 - y), ...[p.a, p.b ?? 0, p.c ?? 0].map(Math.abs));
   return Math.max(...ps.map((value, i) => Math.abs(value - qs[i]))) / (size || 1);
 }
 

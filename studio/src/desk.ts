@@ -3,6 +3,7 @@
 import { element } from "../../src/report/html/player/svg.mjs";
 import { DetailsPanel } from "./details";
 import { JobsPanel } from "./jobs";
+import type { Kit } from "./kit";
 import type { Solution, Task } from "./messages";
 import { Share } from "./share";
 
@@ -18,6 +19,8 @@ export interface Host {
   take(task: Task): void;
   /** Keeps a linkage to compare others with. */
   keep(one: Solution): void;
+  /** The second script. */
+  kit(): Promise<Kit>;
   /** Says something that stays until it can have been read; what went wrong stays until it is closed. */
   say(text: string, wrong?: boolean): void;
 }

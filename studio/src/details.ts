@@ -1,13 +1,11 @@
 // Everything about one linkage: the report's player, its charts and its words, and files.
 
-import { CycleChart } from "../../src/report/html/player/chart.mjs";
-import type { Cycle } from "../../src/report/html/player/cycle.mjs";
-import type { FourBar } from "../../src/report/html/player/kinematics.mjs";
-import { Player } from "../../src/report/html/player/player.mjs";
-import { element, figure, shape } from "../../src/report/html/player/svg.mjs";
+import { element } from "../../src/report/html/player/svg.mjs";
+import type { AnglesPlayer } from "./angles";
 import * as api from "./api";
 import type { Host } from "./desk";
 import { changing } from "./focus";
+import type { Kit } from "./kit";
 import { labelled, nounOf } from "./labels";
 import type { Task } from "./messages";
 
@@ -26,99 +24,6 @@ const FORMATS: [string, string, string][] = [
   ["sheet", "svg", "Drawing (SVG)"],
   ["html", "html", "Report (HTML)"],
 ];
-
-interface Sample {
-  q: number;
-  joints: { C: number[]; D: number[] };
-  coupler?: number;
-  follower?: number;
-}
-
-const degrees = (from: number[], to: number[]) => (Math.atan2(to[1] - from[1], to[0] - from[0]) * 180) / Math.PI;
-const near = (angle: number, other: number) => angle + 360 * Math.round((other - angle) / 360);
-
-/** The report's player with one chart more: the angles of the links. */
-class AnglesPlayer extends Player {
-  declare angles: CycleChart;
-
-  makeCharts(place: HTMLElement, unit: string | null) {
-    super.makeCharts(place, unit);
-    const read = (s: Sample) => {
-      this.place(s);
-      return `${figure(s.follower, 4)}°, ${figure(s.coupler, 4)}°`;
-    };
-    const line = (kind: string, of: (s: Sample) => number | undefined) => ({ name: kind, kind, of });
-    this.angles = new CycleChart(place, {
-      title: "Angles of the links",
-      height: 150,
-      onPick: (q: number) => {
-        this.pause();
-        this.moveTo(q);
-      },
-      lines: [
-        line("main", (s) => s.follower),
-        line("along-x", (s) => s.coupler),
-        line("along-y", (s) => (this.cycle as Cycle).crankDeg(s.q)),
-      ],
-      read,
-    } as never);
-    const key = (kind: string, text: string) =>
-      element("span", { class: "key" }, [
-        shape("svg", { class: "chart", width: 18, height: 8, "aria-hidden": "true" }, [
-          shape("path", { class: `line ${kind}`, d: "M0 4h18" }),
-        ]),
-        text,
-      ]);
-    place.append(
-      element("p", { class: "chart-note" }, [
-        element("span", { class: "keys" }, [
-          key("main", "follower"),
-          key("along-x", "coupler"),
-          key("along-y", "input"),
-        ]),
-      ]),
-    );
-  }
-
-  show(mechanism: unknown) {
-    super.show(mechanism as never);
-    let last: Sample | null = null;
-    for (const sample of this.samples as unknown as (Sample | null)[]) {
-      if (sample) this.turn(sample, last);
-      last = sample ?? last;
-    }
-    this.angles.show(this.cycle as Cycle, this.samples as never);
-    this.moveTo(this.q);
-  }
-
-  /** The angles at a sample, without a jump from the one before. */
-  private turn(sample: Sample, before: Sample | null) {
-    const { B } = (this.cycle as Cycle).mechanism.linkage as FourBar;
-    const [coupler, follower] = [degrees(sample.joints.C, sample.joints.D), degrees(B, sample.joints.D)];
-    sample.coupler = before ? near(coupler, before.coupler as number) : coupler;
-    sample.follower = before ? near(follower, before.follower as number) : follower;
-  }
-
-  moveTo(q: number) {
-    super.moveTo(q);
-    if (!this.angles || !this.cycle) return;
-    const sample = this.cycle.sample(this.q) as unknown as Sample | null;
-    if (sample && this.place(sample)) this.angles.at(this.q, sample);
-  }
-
-  /** The angles of a sample, as they lie on the curves of the chart; false where there are none. */
-  private place(sample: Sample): boolean {
-    const around = (this.samples as unknown as (Sample | null)[]).filter(
-      (s) => s && s.coupler !== undefined,
-    ) as Sample[];
-    if (around.length === 0) return false;
-    this.turn(
-      sample,
-      around.reduce((best, s) => (Math.abs(s.q - sample.q) < Math.abs(best.q - sample.q) ? s : best)),
-    );
-    return true;
-  }
-}
 
 export class DetailsPanel {
   private panel = element("details", { class: "desk-card", id: "details", name: "desk" }) as HTMLDetailsElement;
@@ -222,12 +127,13 @@ export class DetailsPanel {
     if (key === this.shownOf) return;
     this.loading = key;
     try {
-      const details = await api.details(of.source);
+      // The player comes with the second script.
+      const [details, kit] = await Promise.all([api.details(of.source), this.host.kit()]);
       // Another one may have been asked for since.
       if (this.loading !== key || this.job !== job) return;
       this.shownOf = key;
       this.of = of;
-      this.show(details);
+      this.show(details, kit);
     } catch (error) {
       if (this.loading !== key || this.job !== job) return;
       this.nothing.hidden = false;
@@ -252,7 +158,7 @@ export class DetailsPanel {
     this.title.textContent = same ? now.title : `${this.of?.title}, as it stood`;
   }
 
-  private show(details: api.Details) {
+  private show(details: api.Details, { player: Player }: Kit) {
     this.details = details;
     const { shown } = details;
     this.tell();
@@ -268,7 +174,7 @@ export class DetailsPanel {
     this.stage.replaceChildren();
     this.charts.replaceChildren();
     const { points, closed, tolerance } = details;
-    this.player = new AnglesPlayer(this.stage, this.charts, {
+    this.player = new Player(this.stage, this.charts, {
       unit: details.unit ?? null,
       target: { points, closed, tolerance, noun: nounOf(this.of?.task ?? {}) },
       transmissionMin: details.transmission_deg_min ?? null,

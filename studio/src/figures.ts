@@ -1,13 +1,14 @@
 // Linkages as pictures: on the board and in the strip.
 
 import { Cycle } from "../../src/report/html/player/cycle.mjs";
+import { belowPoint, guideEnds, guideOf, outlineAt } from "../../src/report/html/player/guide.mjs";
 import { pathThrough, px, setAll, shape } from "../../src/report/html/player/svg.mjs";
 import { Machine } from "./machine";
-import type { Point, Shown } from "./messages";
+import { type Point, pivotsOf, type Shown } from "./messages";
 
 export type Toward = (p: Point) => Point;
 
-type Joints = { C: Point; D: Point; P: Point } | null;
+type Joints = { C: Point; D: Point; P: Point; u?: Point } | null;
 
 /** Of so many positions of a circuit one is looked at for the places that the links pass. */
 const PASSED = 16;
@@ -17,6 +18,7 @@ export class Moving {
   private made: Cycle | null = null;
   private joints: Joints[] | null = null;
   private places: Point[] | null = null;
+  private guiding: ReturnType<typeof guideOf> | undefined;
 
   constructor(
     readonly shown: Shown,
@@ -39,24 +41,46 @@ export class Moving {
     return this.circuit.map((joints) => joints?.P ?? null);
   }
 
+  /** The rail of a slider, or the rod that runs through its block; null of a four-bar. */
+  get guide() {
+    if (!this.shown.linkage.kind) return null;
+    this.guiding ??= guideOf(this.cycle.kernel, this.circuit);
+    return this.guiding;
+  }
+
+  /** The bars at a position, and the plate that carries P, between joints; with a slider also its guide. */
+  bars(joints: NonNullable<Joints>): { bars: [Point, Point][]; plate: Point[]; along: Point[] } {
+    const { guide } = this;
+    const [A, B] = pivotsOf(this.shown.linkage);
+    const { C, D, P } = joints;
+    const crank: [Point, Point] = [A, C];
+    if (!guide) return { bars: [crank, [B, D], [C, D]], plate: [C, D, P], along: [] };
+    const along = guideEnds(this.cycle.kernel, guide, joints) as Point[];
+    // An arm holds a block at its pivot; the plate of a rod ends below P.
+    const arm: [Point, Point][] = guide.moves ? [[B, D]] : [];
+    const corner = guide.moves ? (belowPoint(this.cycle.kernel, joints as never) as Point) : D;
+    return { bars: [crank, ...arm], plate: [C, corner, P], along };
+  }
+
   /** Places that the links pass. */
   get passed(): Point[] {
-    const { A, B } = this.shown.linkage;
     const along = (p: Point, q: Point) =>
       [0, 0.25, 0.5, 0.75, 1].map((part): Point => [p[0] + (q[0] - p[0]) * part, p[1] + (q[1] - p[1]) * part]);
     this.places ??= this.circuit.flatMap((joints, i) => {
       if (!joints || i % PASSED !== 0) return [];
-      const { C, D, P } = joints;
-      return [...along(A, C), ...along(B, D), ...along(C, P), ...along(D, P)];
+      const { bars, plate, along: ends } = this.bars(joints);
+      const [C, corner, P] = plate;
+      const lines = [...bars.slice(0, 2), [C, P], [corner, P], ...(ends.length > 0 ? [ends] : [])];
+      return lines.flatMap(([from, to]) => along(from, to));
     });
     return this.places;
   }
 
   /** The links in one of the positions, as a line through the joints. */
   get links(): Point[] {
-    const { A, B } = this.shown.linkage;
+    const [A, ...others] = pivotsOf(this.shown.linkage);
     const joints = this.circuit.find((one) => one !== null);
-    return joints ? [A, joints.C, joints.D, B] : [A, B];
+    return joints ? [A, joints.C, joints.D, ...others] : [A, ...others];
   }
 
   /** q at a part (0 to 1) of the motion: round and round, or to and fro over what the points use. */
@@ -80,9 +104,8 @@ export class Moving {
 
   box(): number[] {
     const box = [Infinity, Infinity, -Infinity, -Infinity];
-    const { A, B } = this.shown.linkage;
     const joints = this.circuit.flatMap((j) => (j ? [j.C, j.D, j.P] : []));
-    for (const [x, y] of [A, B, ...joints]) {
+    for (const [x, y] of [...pivotsOf(this.shown.linkage), ...joints]) {
       box[0] = Math.min(box[0], x);
       box[1] = Math.min(box[1], y);
       box[2] = Math.max(box[2], x);
@@ -121,6 +144,8 @@ export class Figure {
   private curve = shape("path", { class: "curve" });
   private ground = shape("path", { class: "ground" });
   private coupler = shape("path", { class: "coupler" });
+  private guide = shape("path", { class: "guide" });
+  private block = shape("path", { class: "block" });
   private edges = shape("path", { class: "bar-edge" });
   private bars = shape("path", { class: "bar" });
   private pins = Array.from({ length: 4 }, () => shape("circle", { class: "pin" }));
@@ -130,15 +155,18 @@ export class Figure {
   private toward: Toward = (p) => p;
 
   /** `isMachine`: with ground, motor, letters and trail. */
-  constructor(scale = 1, isMachine = false) {
+  constructor(
+    private scale = 1,
+    isMachine = false,
+  ) {
     this.machine = isMachine ? new Machine() : null;
     this.pins.forEach((pin, i) => {
       setAll(pin, { r: (i < 2 ? 5.4 : 4.4) * scale });
     });
     setAll(this.point, { r: 5 * scale });
     const [under, over] = this.machine ? [[this.machine.under], [this.machine.over]] : [[], []];
-    const links = [this.coupler, this.edges, this.bars];
-    this.group.append(this.ground, this.curve, ...under, ...links, ...over, ...this.pins, this.point);
+    const links = [this.guide, this.coupler, this.edges, this.bars];
+    this.group.append(this.ground, this.curve, ...under, ...links, ...over, this.block, ...this.pins, this.point);
   }
 
   show(moving: Moving | null, toward: Toward) {
@@ -146,22 +174,33 @@ export class Figure {
     this.toward = toward;
     this.group.classList.toggle("absent", !moving);
     if (!moving) return;
-    const { A, B } = moving.shown.linkage;
+    const pivots = pivotsOf(moving.shown.linkage);
     setAll(this.curve, { d: pathThrough(moving.curve.map((p) => p && toward(p))) });
-    setAll(this.ground, { d: pathThrough([toward(A), toward(B)]) });
+    setAll(this.ground, { d: pathThrough(pivots.map(toward)) });
+    for (const path of [this.guide, this.block]) path.classList.toggle("absent", !moving.guide);
+    // A rail has no second pivot, and the foot on a rod is no pin.
+    this.pins[1].classList.toggle("absent", pivots.length < 2);
+    this.pins[3].classList.toggle("absent", moving.guide?.moves === true);
     this.machine?.show(moving, toward);
   }
 
   pose(part: number) {
     const { moving, toward } = this;
-    const joints = moving?.cycle.at(moving.at(part));
+    const joints = moving?.cycle.at(moving.at(part)) as Joints;
     if (!moving || !joints) return;
-    const { A, B } = moving.shown.linkage;
-    const [a, b, c, d, p] = [A, B, joints.C, joints.D, joints.P].map((one) => toward(one as Point));
-    const bars = pathThrough([a, c]) + pathThrough([b, d]) + pathThrough([c, d]);
-    setAll(this.coupler, { d: `${pathThrough([c, d, p])}Z` });
-    setAll(this.edges, { d: bars });
-    setAll(this.bars, { d: bars });
+    const [A, B = joints.D] = pivotsOf(moving.shown.linkage);
+    const [a, b, c, d, p] = [A, B, joints.C, joints.D, joints.P].map(toward);
+    const { bars, plate, along } = moving.bars(joints);
+    const lines = bars.map((ends) => pathThrough(ends.map(toward))).join("");
+    setAll(this.coupler, { d: `${pathThrough(plate.map(toward))}Z` });
+    setAll(this.edges, { d: lines });
+    setAll(this.bars, { d: lines });
+    if (moving.guide) {
+      const { kernel } = moving.cycle as never as { kernel: { s: Point } };
+      setAll(this.guide, { d: pathThrough(along.map(toward)) });
+      const direction = moving.guide.moves ? (joints.u as Point) : kernel.s;
+      setAll(this.block, { d: outlineAt(moving.guide.moves ? b : d, direction, this.scale) });
+    }
     [a, b, c, d].forEach(([x, y], i) => {
       setAll(this.pins[i], { cx: px(x), cy: px(y) });
     });

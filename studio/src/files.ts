@@ -1,9 +1,8 @@
 // Files and texts that are dropped, pasted or chosen: what they are, and how the studio reads them.
 
 import * as api from "./api";
-import type { Linkage } from "./grab";
 import { more } from "./kit";
-import type { Point, Reading, Task } from "./messages";
+import type { Linkage, Point, Reading, Task } from "./messages";
 import { ofText, resampled } from "./target";
 import { roundTo, settled, sizeOf, taskOf, withPoints } from "./task";
 

@@ -1,8 +1,8 @@
 // A linkage in the hand: joints that are dragged, lengths and pivots that are locked, what results.
 
-import type { Point, Shown } from "./messages";
+import type { FourBar, Point } from "./messages";
 
-export type Linkage = Shown["linkage"];
+export type Linkage = FourBar;
 export type Joint = "A" | "B" | "C" | "D" | "P";
 export type Pose = Record<Joint, Point>;
 export type Length = "a" | "b" | "c" | "d" | "e" | "ground";

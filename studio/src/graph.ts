@@ -5,7 +5,7 @@ import { inputAt } from "../../src/report/html/player/drive.mjs";
 import { kernelOf, positionAt } from "../../src/report/html/player/kinematics.mjs";
 import { element, figure, pathThrough, px, setAll, shape } from "../../src/report/html/player/svg.mjs";
 import type { Page } from "./kit";
-import type { Point, Shown, Task } from "./messages";
+import { type FourBar, fourBarOf, type Point, type Shown, type Task } from "./messages";
 import { dragging, type Grip, watchPointers } from "./pointers";
 import { moved } from "./target";
 
@@ -23,9 +23,10 @@ const beside = (deg: number, other: number) => deg + 360 * Math.round((other - d
 
 /** What a linkage generates: the outputs at inputs, degrees; NaN where its loop is open. */
 export function generated(shown: Shown, pairs: Point[], inputs: number[]): number[] {
-  const { linkage, crank_deg, t1_at, output_offset_deg: offset = 0, sense } = shown;
-  const kernel = kernelOf(linkage as never);
-  const [A, B] = [linkage.A, linkage.B];
+  const { crank_deg, t1_at, output_offset_deg: offset = 0, sense } = shown;
+  // The studio's functions are those of four-bars.
+  const { A, B } = fourBarOf(shown.linkage) as FourBar;
+  const kernel = kernelOf(shown.linkage as never);
   const ground = Math.atan2(B[1] - A[1], B[0] - A[0]) * DEGREES;
   const sign = sense === "opposite" ? -1 : 1;
   let last = pairs[0][1];

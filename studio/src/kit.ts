@@ -1,10 +1,11 @@
-// What motions, functions and building add to the page: a second script, loaded when it is first needed. Both scripts have
+// What motions, functions, sliders, details and building add to the page: a second script, loaded when it is first needed. Both scripts have
 // their own copies of what holds nothing; what holds something is handed over here.
 
+import type { AnglesPlayer } from "./angles";
 import type { Board } from "./board";
 import type { BuildPanel } from "./build";
 import type { Example } from "./examples";
-import type { Answer, Point, Task } from "./messages";
+import type { Answer, LoopKind, Point, Task } from "./messages";
 import type { Grip } from "./pointers";
 import type { How } from "./store";
 import type { Hand, Tool } from "./surface";
@@ -29,8 +30,9 @@ export interface Page {
 /** What the second script gives. */
 export interface Kit {
   join(page: Page): void;
-  /** The panel that builds. */
+  /** The panel that builds, and the player of the details. */
   panel: typeof BuildPanel;
+  player: typeof AnglesPlayer;
   /** Begins a motion, unless one stands. */
   motion(): void;
   /** The board has been drawn anew, and the linkage stands at a part of its motion. */
@@ -43,6 +45,8 @@ export interface Kit {
   /** Brings its controls to what the task says. */
   fill(task: Task): void;
   answered(answer: Answer): void;
+  /** Asks for other kinds of linkages. */
+  ofKinds(kinds: LoopKind[]): void;
   /** The task with the outline of its body. */
   outlined(task: Task, outline: Point[]): Task;
   example(name: string): Example;

@@ -3,6 +3,9 @@
 /** By the keys of problem files: the label of the control, and the head of the row in the report's table. */
 const LABELS: Record<string, [label: string, row?: string]> = {
   type: ["driven by", "type"],
+  input: ["the crank turns fully"],
+  stroke: ["stroke of the slider"],
+  time_ratio: ["time ratio of the slider's ways"],
   longest_max: ["longest link", "longest link, P included"],
   extent_max: ["whole linkage in motion", "diagonal of the motion's box"],
   transmission_deg_min: ["least transmission angle", "worst transmission angle, °"],

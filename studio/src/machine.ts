@@ -3,7 +3,7 @@
 
 import { pathThrough, px, setAll, shape } from "../../src/report/html/player/svg.mjs";
 import type { Moving, Toward } from "./figures";
-import type { Point } from "./messages";
+import { type Point, pivotsOf } from "./messages";
 
 /** The part of a motion over which P leaves a trail, its pieces, and steps of each. */
 const TRAIL = 0.2;
@@ -56,11 +56,14 @@ export class Machine {
   }
 
   show(moving: Moving, toward: Toward) {
-    const { A, B } = moving.shown.linkage;
-    [A, B].forEach((pivot, i) => {
-      const [x, y] = toward(pivot);
+    const pivots = pivotsOf(moving.shown.linkage);
+    const [A] = pivots;
+    pivots.map(toward).forEach(([x, y], i) => {
       setAll(this.stands[i], { transform: `translate(${px(x)} ${px(y)})` });
     });
+    const second = pivots.length < 2;
+    this.stands[1].classList.toggle("absent", second);
+    this.letters[1].classList.toggle("absent", second);
     const { drive } = moving.shown;
     const { cyclic, sense } = moving.cycle;
     const isFull = cyclic && drive.kind === "turn";

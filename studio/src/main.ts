@@ -12,14 +12,22 @@ import { EXAMPLES, type Example } from "./examples";
 import { Exchange } from "./exchange";
 import { evenly, taskOfText } from "./files";
 import { Gallery } from "./gallery";
-import type { Linkage } from "./grab";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
 import { byId, input } from "./ids";
 import { type Kit, kitFor, more } from "./kit";
 import { errorUnit, labelled, nounOf } from "./labels";
 import { type Place, remember, remembered } from "./memory";
-import type { Answer, AnyAsk, Point, Shown, Task } from "./messages";
+import {
+  type Answer,
+  type AnyAsk,
+  fourBarOf,
+  type Linkage,
+  type Point,
+  pivotsOf,
+  type Shown,
+  type Task,
+} from "./messages";
 import { nameFault } from "./names";
 import { Nine } from "./nine";
 import { PhotographPanel } from "./photograph";
@@ -138,6 +146,7 @@ class Page {
     pinned: () => this.showing.pinned,
     take: (task) => this.open(tasks.taskOf({ ...task, version: 0 })),
     keep: (one) => this.keepShown(one),
+    kit: () => this.kit((kit) => kit),
   });
   private byHand = new ByHand(byId("by-hand"), {
     task: () => this.task,
@@ -190,6 +199,7 @@ class Page {
     listenToRequirements({
       now: () => this.task,
       change: (task) => this.replace(task),
+      ofKinds: (kinds) => void this.kit((kit) => kit.ofKinds(kinds)),
       shown: () => this.board.fit(),
       isWalker: () => this.board.isWalker,
       standing: () => this.scene.box(),
@@ -207,7 +217,7 @@ class Page {
         this.keep();
         const hips = on && this.scene.chosen()?.shown.linkage;
         const ground = tasks.boxOf(this.task.points)?.[1] ?? 0;
-        if (hips && Math.min(hips.A[1], hips.B[1]) < ground)
+        if (hips && pivotsOf(hips).some(([, y]) => y < ground))
           this.desk.say("The hips lie below the ground: tick “both fixed pivots inside a box” under Wishes.");
       },
       close: (closed) => this.replace(tasks.settled({ ...this.task, closed })),
@@ -426,6 +436,8 @@ class Page {
   private grab() {
     const chosen = this.scene.chosen();
     if (!chosen) return this.desk.say("There is no linkage to grab yet.");
+    if (!fourBarOf(chosen.shown.linkage))
+      return this.desk.say("The hand changes four-bars; one with a slider follows what is drawn and asked.");
     this.wasPlaying ||= this.scene.isPlaying;
     this.scene.play(false);
     if (!this.byHand.shown) {
@@ -501,7 +513,7 @@ class Page {
         "The figures published for this problem hold for it as it was opened: they go. Undo brings them back.",
       );
     this.size.show(task);
-    if (!more.kit && (task.body || task.function))
+    if (!more.kit && (task.body || task.function || task.mechanism))
       void this.kit(() => {
         this.board.redraw();
         this.settle();

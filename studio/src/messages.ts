@@ -1,11 +1,44 @@
 // What the studio and the page say to each other: the types of wire.ts, which are made from the studio's descriptions.
 
-import type { Answer, Ask as AnyAsk, Counted, Kind, Reading, Relaxation, Shown, TypedValue, Unit } from "./wire";
+import type {
+  Answer,
+  Ask as AnyAsk,
+  Counted,
+  Kind,
+  LoopKind,
+  Reading,
+  Relaxation,
+  Shown,
+  TypedValue,
+  Unit,
+} from "./wire";
 
-export type { Answer, AnyAsk, Counted, Kind, Reading, Relaxation, Shown, Unit };
+export type { Answer, AnyAsk, Counted, Kind, LoopKind, Reading, Relaxation, Shown, Unit };
 export type Value = TypedValue;
 
 export type Point = [number, number];
+
+/** A linkage of any kind, as in records: four-bars have no `kind`. */
+export type Linkage = Shown["linkage"];
+
+/** A four-bar by its joints and lengths. */
+export interface FourBar {
+  A: Point;
+  B: Point;
+  a: number;
+  b: number;
+  c: number;
+  d: number;
+  e: number;
+  t1: number;
+  t2: number;
+}
+
+/** The same linkage as a four-bar; null where it has a slider. */
+export const fourBarOf = (linkage: Linkage) => (linkage.kind ? null : (linkage as FourBar));
+
+/** The fixed pivots of a linkage: a slider-crank has one. */
+export const pivotsOf = ({ A, B }: Linkage): Point[] => (B ? [A, B] : [A]);
 
 /** xmin, ymin, xmax, ymax. */
 export type Box = [number, number, number, number];

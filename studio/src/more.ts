@@ -1,13 +1,16 @@
-// The second script: motions, functions, and the panel that builds.
+// The second script: motions, functions, wishes of linkages with a slider, the player of the details, and the panel that
+// builds.
 
+import { AnglesPlayer } from "./angles";
 import * as api from "./api";
 import { BuildPanel } from "./build";
 import type { Example } from "./examples";
 import { Graph } from "./graph";
 import type { Kit, Page } from "./kit";
-import type { Answer, Point, Task } from "./messages";
+import type { Answer, LoopKind, Point, Task } from "./messages";
 import { centred, Motion } from "./motion";
 import { sights } from "./sights";
+import { ofKinds, Slides } from "./slides";
 import { taskOf } from "./task";
 
 /** The controls that a path alone has, and those that a function has not. */
@@ -16,9 +19,11 @@ const OF_PLACES = ["closed", "tolerance", "each-tolerance", "timing", "unit"];
 
 class Second implements Kit {
   panel = BuildPanel;
+  player = AnglesPlayer;
   private page!: Page;
   private poses!: Motion;
   private graph!: Graph;
+  private slides!: Slides;
   /** Whether the next linkage of a function is to be brought into view. */
   private isNew = false;
   private wasFunction = false;
@@ -33,6 +38,7 @@ class Second implements Kit {
       }),
     );
     this.poses = new Motion(page);
+    this.slides = new Slides(page);
     this.graph = new Graph(page, async (text) =>
       taskOf((await api.read({ kind: "problem", name: "formula", text })).ask),
     );
@@ -76,6 +82,11 @@ class Second implements Kit {
     this.wasFunction = isFunction;
     this.poses.fill(task);
     this.graph.fill(task);
+    this.slides.fill(task);
+  }
+
+  ofKinds(kinds: LoopKind[]) {
+    this.page.replace(ofKinds(this.page.task(), kinds));
   }
 
   answered(answer: Answer) {

@@ -3,7 +3,7 @@
 import { KINDS } from "./boxes";
 import { byId, input } from "./ids";
 import { unitAfter } from "./labels";
-import type { Box, Task, Unit } from "./messages";
+import type { Box, LoopKind, Task, Unit } from "./messages";
 import { nameFault } from "./names";
 import {
   boxOf,
@@ -45,6 +45,8 @@ const TYPES: Record<string, Task["types"]> = {
   rocking: ["double-rocker", "triple-rocker", "rocker-crank"],
 };
 
+const KINDS_OF_LINKAGES: LoopKind[] = ["four-bar", "slider-crank", "inverted-slider-crank"];
+
 const SIDES = ["left", "bottom", "right", "top"];
 const BOXES = [
   { key: KINDS[0], box: "pivots", numbers: "box-numbers", prefix: "", around: pivotsBeside },
@@ -74,6 +76,8 @@ const FITS_SAID =
 export interface Asking {
   now(): Task;
   change(task: Task): void;
+  /** Other kinds of linkages are asked for. */
+  ofKinds(kinds: LoopKind[]): void;
   /** A box has come: it is brought into view. */
   shown(): void;
   isWalker(): boolean;
@@ -83,7 +87,7 @@ export interface Asking {
 }
 
 /** Listens to the controls; every change makes another task of the one that stands. */
-export function listenToRequirements({ now, change, shown, isWalker, standing, say }: Asking) {
+export function listenToRequirements({ now, change, ofKinds, shown, isWalker, standing, say }: Asking) {
   const on = (id: string, act: () => Task | null) =>
     byId(id).addEventListener("change", () => {
       const task = act();
@@ -142,6 +146,11 @@ export function listenToRequirements({ now, change, shown, isWalker, standing, s
       return { ...now(), [key]: value === "" ? undefined : valueAsNumber };
     });
   }
+  on("kind", () => {
+    const kind = select("kind").value;
+    ofKinds(kind === "all" ? KINDS_OF_LINKAGES : ([kind] as LoopKind[]));
+    return null;
+  });
   on("type", () => ({ ...now(), types: TYPES[select("type").value] ?? now().types }));
   for (const size of SIZES) {
     const slider = input(size.id);
@@ -190,6 +199,10 @@ export function fillRequirements(task: Task) {
   select("timing").value = task.timing?.offset ?? "none";
   for (const [id, key] of NUMBERS) set(id, task[key]);
   const key = Object.keys(TYPES).find((name) => TYPES[name].join() === task.types.join());
+  const kinds = task.mechanism ?? ["four-bar"];
+  const kind = kinds.length === KINDS_OF_LINKAGES.length ? "all" : kinds.length > 1 ? "as-given" : kinds[0];
+  select("kind").value = kind;
+  byId("kinds-given").hidden = kind !== "as-given";
   select("type").value = key ?? "as-given";
   byId("as-given").hidden = key !== undefined;
   for (const size of SIZES) {

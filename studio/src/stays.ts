@@ -8,6 +8,9 @@ import type { Task } from "./messages";
 const KEYS: [string, (task: Task) => unknown][] = [
   ["tolerance", (task) => task.tolerance],
   ["type", (task) => task.types.length > 0],
+  ["input", (task) => task.input === "full-turn"],
+  ["stroke", (task) => task.stroke],
+  ["time_ratio", (task) => task.time_ratio],
   ["transmission_deg_min", (task) => task.transmission_deg_min],
   ["link_ratio_max", (task) => task.link_ratio_max],
   ["longest_max", (task) => task.kept?.["require.longest_max"]],

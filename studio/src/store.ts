@@ -1,8 +1,7 @@
 // The task that stands, its versions, and the steps back and forth. Nothing here knows the page.
 
-import type { Linkage } from "./grab";
 import { Steps } from "./memory";
-import type { Task } from "./messages";
+import type { Linkage, Task } from "./messages";
 import { isSameButForName, withoutStale } from "./task";
 
 /** How an edit is meant. */

@@ -13,6 +13,7 @@ import {
   gaitInWords,
   jams,
   limitedBy,
+  longestOf,
   marks,
   nearnessInWords,
   SIGNS,
@@ -33,8 +34,8 @@ export const inWords = (shown: Shown) =>
     : `not met: ${[...new Set(shown.unmet.map(labelOf))].join(", ") || "a defect"}`;
 
 /** Whether what it misses by is rounding: an error of 1e-14 tells nobody anything. */
-export function isExact({ ability, max, linkage: { a, b, c, d, e } }: Shown): boolean {
-  return !ability && max < 1e-11 * Math.max(a, b, c, d, e);
+export function isExact({ ability, max, linkage }: Shown): boolean {
+  return !ability && max < 1e-11 * longestOf(linkage);
 }
 
 /** How near it comes: to the last digit where it is one of the linkages through nine points. */

@@ -1,7 +1,7 @@
 // What is asked, kept in step with itself: lists beside the points are as long as the points are many.
 
 import { unitAfter } from "./labels";
-import type { Answer, AnyAsk, Box, Point, Shown, Task } from "./messages";
+import type { Answer, AnyAsk, Box, Linkage, Point, Shown, Task } from "./messages";
 import { jams } from "./words";
 
 /** So many points have all their linkages told. */
@@ -119,6 +119,7 @@ export function withLengthsTimes(task: Task, by: number): Task {
     points: task.points.map((p) => p.map(length) as Point),
     tolerance: task.tolerance === undefined ? undefined : length(task.tolerance),
     tolerances: task.tolerances?.map(length),
+    stroke: (task.stroke as number[] | undefined)?.map(length) as Task["stroke"],
     pivots_in: box(task.pivots_in),
     footprint_in: box(task.footprint_in),
     body: task.body && {
@@ -132,9 +133,10 @@ export function withLengthsTimes(task: Task, by: number): Task {
 
 /** The same linkage, as large for a path that is so many times as large. */
 export function shownTimes(shown: Shown, by: number): Shown {
-  const { A, B, a, b, c, d, e, ...signs } = shown.linkage;
-  const place = ([x, y]: number[]) => [x * by, y * by] as Point;
-  const linkage = { ...signs, A: place(A), B: place(B), a: a * by, b: b * by, c: c * by, d: d * by, e: e * by };
+  const { kind: _k, t1: _1, t2: _2, line_deg: _d, ...lengths } = shown.linkage;
+  const times = (value: unknown): unknown => (Array.isArray(value) ? value.map(times) : by * (value as number));
+  const larger = Object.fromEntries(Object.entries(lengths).map(([name, value]) => [name, times(value)]));
+  const linkage = { ...shown.linkage, ...larger } as Linkage;
   const within = shown.certified_within && shown.certified_within * by;
   return { ...shown, linkage, rms: shown.rms * by, max: shown.max * by, certified_within: within };
 }
@@ -164,12 +166,13 @@ const drawnAlone = (task: Task, points: Point[], closed: boolean): Task => ({
 });
 
 /** The path alone. */
-export const pathAlone = ({ name, unit, source, points, closed, seed }: Task): Task => ({
+export const pathAlone = ({ name, unit, source, points, closed, mechanism, seed }: Task): Task => ({
   name,
   unit,
   source,
   points,
   closed,
+  mechanism,
   types: [],
   seed,
 });

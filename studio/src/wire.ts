@@ -9,14 +9,13 @@ export type AngleOffset = "free" | "fixed" | "ground";
  */
 export type DriveKind = "turn" | "rock" | "through" | "none";
 /**
+ * The kinds of linkages of one loop.
+ */
+export type LoopKind = "four-bar" | "slider-crank" | "inverted-slider-crank";
+/**
  * The sense in which the follower turns while the crank turns as its angles are written.
  */
 export type Sense = "any" | "same" | "opposite";
-/**
- * The types of four-bars, told by which link is the shortest where the Grashof margin is positive.
- */
-export type LinkageType =
-  "crank-rocker" | "rocker-crank" | "double-crank" | "double-rocker" | "triple-rocker" | "change-point";
 /**
  * The activity of the studio for a tab.
  */
@@ -42,6 +41,10 @@ export type ClosingPolicy = "one-way" | "any";
  */
 export type DirectionPolicy = "any" | "ccw" | "cw";
 /**
+ * The rule for the range of the input.
+ */
+export type InputPolicy = "any" | "full-turn";
+/**
  * The method of the search.
  */
 export type Method = "auto" | "genetic" | "differential-evolution" | "least-squares" | "continuation";
@@ -54,9 +57,21 @@ export type Objective = "sum-of-squares" | "max-deviation";
  */
 export type OrderPolicy = "required" | "any";
 /**
+ * An interval [low, high]; a fixed value has low = high.
+ *
+ * @minItems 2
+ * @maxItems 2
+ */
+export type Limits = [unknown, unknown];
+/**
  * The motion over which the transmission angle is judged.
  */
 export type TransmissionOver = "cycle" | "used";
+/**
+ * The types of four-bars, told by which link is the shortest where the Grashof margin is positive.
+ */
+export type LinkageType =
+  "crank-rocker" | "rocker-crank" | "double-crank" | "double-rocker" | "triple-rocker" | "change-point";
 /**
  * The unit that labels lengths.
  */
@@ -102,10 +117,6 @@ export type Defect =
       kind: "circuit";
     };
 /**
- * The kinds of linkages of one loop.
- */
-export type LoopKind = "four-bar" | "slider-crank" | "inverted-slider-crank";
-/**
  * The state of a job.
  */
 export type JobState = "running" | "done" | "stopped" | "broken-off" | "elsewhere" | "failed" | "unreadable";
@@ -141,6 +152,7 @@ export interface Wire {
   Form: Form;
   FormulaSpec: FormulaSpec;
   FunctionAsk: FunctionAsk;
+  InputPolicy: InputPolicy;
   JobAsk: JobAsk;
   JobList: JobList;
   JobProgress: JobProgress;
@@ -151,14 +163,15 @@ export interface Wire {
   Kind: Kind;
   Known: Known;
   LeftOut: LeftOut;
+  Limits: Limits;
   LinkageAsk: LinkageAsk;
   LinkageType: LinkageType;
   LoopKind: LoopKind;
   Method: Method;
-  NaturalCoordinates: NaturalCoordinates;
   Objective: Objective;
   OfJob: OfJob;
   OneLoop: OneLoop;
+  OneLoop2: OneLoop2;
   OnePolicy: OnePolicy;
   Opened: Opened;
   OrderPolicy: OrderPolicy;
@@ -255,7 +268,7 @@ export interface Shown {
    * Longest over shortest link.
    */
   link_ratio: number;
-  linkage: NaturalCoordinates;
+  linkage: OneLoop2;
   /**
    * The largest error.
    */
@@ -285,7 +298,10 @@ export interface Shown {
    * The worst transmission angle, degrees from 0 to 90.
    */
   transmission_deg: number;
-  type: LinkageType;
+  /**
+   * Its type; of a linkage with a slider its kind.
+   */
+  type: string;
   /**
    * The requirements that are not met, by their keys, and the defects.
    */
@@ -314,9 +330,9 @@ export interface Drive {
   t1: number;
 }
 /**
- * The nine parameters and two signs in the letters of the seed paper, as they stand in files.
+ * A linkage by its keys, which may be no linkage: every key of every kind.
  */
-export interface NaturalCoordinates {
+export interface OneLoop2 {
   /**
    * The fixed pivot of the crank.
    *
@@ -325,40 +341,65 @@ export interface NaturalCoordinates {
    */
   A: [number, number];
   /**
-   * The fixed pivot of the follower.
+   * The fixed pivot of a four-bar's follower, or of the block of an inverted slider-crank.
    *
    * @minItems 2
    * @maxItems 2
    */
-  B: [number, number];
+  B?: [number, number];
   /**
    * |AC|.
    */
   a: number;
   /**
-   * |CD|.
+   * |CD| of a four-bar and of a slider-crank.
    */
-  b: number;
+  b?: number;
   /**
-   * |BD|.
+   * |BD| of a four-bar.
    */
-  c: number;
+  c?: number;
   /**
-   * |CP|.
+   * P along the coupler from C, of kinds with a slider.
    */
-  d: number;
+  coupler_x?: number;
   /**
-   * |DP|.
+   * P to the left of the coupler, of kinds with a slider.
    */
-  e: number;
+  coupler_y?: number;
   /**
-   * Which intersection D takes: 1 = left of C -> B.
+   * |CP| of a four-bar.
+   */
+  d?: number;
+  /**
+   * |DP| of a four-bar.
+   */
+  e?: number;
+  kind?: LoopKind;
+  /**
+   * The direction of a slider-crank's line from the x axis, degrees.
+   */
+  line_deg?: number;
+  /**
+   * Q, a point of a slider-crank's line, from which the slider's place counts.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  line_point?: [number, number];
+  /**
+   * The distance of B to the left of the rod's line through C, of an inverted slider-crank.
+   */
+  offset?: number;
+  /**
+   * The assembly: of a four-bar 1 where D lies left of the line from C to B; of a slider-crank where D is the one of two
+   * places that lies further along the line; of an inverted one where the block is ahead of C along the rod.
    */
   t1: number;
   /**
-   * Which side of C -> D carries P: 1 = left.
+   * The side of a four-bar's coupler point: 1 where P lies left of the line from C to D.
    */
-  t2: number;
+  t2?: number;
 }
 /**
  * How nearly the points of a body move on circles while it takes its poses. A fixed pivot is the centre of the circle.
@@ -465,12 +506,13 @@ export interface Ask {
    * The target has nothing to do with the one before: nothing is to follow it.
    */
   fresh?: boolean;
-  from?: NaturalCoordinates;
+  from?: OneLoop;
   function?: FunctionAsk;
   /**
    * The number of a linkage that stays among the answers while it can follow the hand.
    */
   held?: number;
+  input?: InputPolicy;
   /**
    * Other keys of the problem file under `design`, `require` and `solve`, each with its value as it is typed there.
    */
@@ -485,6 +527,10 @@ export interface Ask {
    * In a motion: the answers are to hold the map of the places of a pin.
    */
   map?: boolean;
+  /**
+   * The kinds of linkages that are searched for; empty: four-bars.
+   */
+  mechanism?: LoopKind[];
   method?: Method;
   /**
    * The hand is still moving: the search waits until it rests.
@@ -517,6 +563,8 @@ export interface Ask {
    * The source of the problem, in words.
    */
   source?: string;
+  stroke?: Limits;
+  time_ratio?: Limits;
   timing?: TimingSpec;
   /**
    * The largest error accepted at any point.
@@ -532,7 +580,7 @@ export interface Ask {
   transmission_deg_min?: number;
   transmission_over?: TransmissionOver;
   /**
-   * The types allowed; empty: any.
+   * The types allowed of four-bars; empty: any.
    */
   types?: LinkageType[];
   unit?: Unit;
@@ -671,6 +719,78 @@ export interface Published {
   vector?: number[];
 }
 /**
+ * A linkage by its keys, which may be no linkage: every key of every kind.
+ */
+export interface OneLoop {
+  /**
+   * The fixed pivot of the crank.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  A: [number, number];
+  /**
+   * The fixed pivot of a four-bar's follower, or of the block of an inverted slider-crank.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  B?: [number, number];
+  /**
+   * |AC|.
+   */
+  a: number;
+  /**
+   * |CD| of a four-bar and of a slider-crank.
+   */
+  b?: number;
+  /**
+   * |BD| of a four-bar.
+   */
+  c?: number;
+  /**
+   * P along the coupler from C, of kinds with a slider.
+   */
+  coupler_x?: number;
+  /**
+   * P to the left of the coupler, of kinds with a slider.
+   */
+  coupler_y?: number;
+  /**
+   * |CP| of a four-bar.
+   */
+  d?: number;
+  /**
+   * |DP| of a four-bar.
+   */
+  e?: number;
+  kind?: LoopKind;
+  /**
+   * The direction of a slider-crank's line from the x axis, degrees.
+   */
+  line_deg?: number;
+  /**
+   * Q, a point of a slider-crank's line, from which the slider's place counts.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  line_point?: [number, number];
+  /**
+   * The distance of B to the left of the rod's line through C, of an inverted slider-crank.
+   */
+  offset?: number;
+  /**
+   * The assembly: of a four-bar 1 where D lies left of the line from C to B; of a slider-crank where D is the one of two
+   * places that lies further along the line; of an inverted one where the block is ahead of C along the rod.
+   */
+  t1: number;
+  /**
+   * The side of a four-bar's coupler point: 1 where P lies left of the line from C to D.
+   */
+  t2?: number;
+}
+/**
  * The angles of a function.
  */
 export interface FunctionAsk {
@@ -796,7 +916,7 @@ export interface Drawn {
    * The crank angle at each target point, degrees.
    */
   crank_deg: number[];
-  linkage: NaturalCoordinates;
+  linkage: OneLoop;
   /**
    * The assembly (1 or -1) at each point.
    */
@@ -892,7 +1012,7 @@ export interface ComparedRow {
    */
   frame_deg?: number;
   label: string;
-  linkage: OneLoop;
+  linkage: OneLoop2;
   /**
    * The point with the largest error.
    */
@@ -939,78 +1059,6 @@ export interface ComparedRow {
    * The requirements that it does not meet.
    */
   unmet: string[];
-}
-/**
- * A linkage as it stands in records: every key of every kind.
- */
-export interface OneLoop {
-  /**
-   * The fixed pivot of the crank.
-   *
-   * @minItems 2
-   * @maxItems 2
-   */
-  A: [number, number];
-  /**
-   * The fixed pivot of a four-bar's follower, or of the block of an inverted slider-crank.
-   *
-   * @minItems 2
-   * @maxItems 2
-   */
-  B?: [number, number];
-  /**
-   * |AC|.
-   */
-  a: number;
-  /**
-   * |CD| of a four-bar and of a slider-crank.
-   */
-  b?: number;
-  /**
-   * |BD| of a four-bar.
-   */
-  c?: number;
-  /**
-   * P along the coupler from C, of kinds with a slider.
-   */
-  coupler_x?: number;
-  /**
-   * P to the left of the coupler, of kinds with a slider.
-   */
-  coupler_y?: number;
-  /**
-   * |CP| of a four-bar.
-   */
-  d?: number;
-  /**
-   * |DP| of a four-bar.
-   */
-  e?: number;
-  kind?: LoopKind;
-  /**
-   * The direction of a slider-crank's line from the x axis, degrees.
-   */
-  line_deg?: number;
-  /**
-   * Q, a point of a slider-crank's line, from which the slider's place counts.
-   *
-   * @minItems 2
-   * @maxItems 2
-   */
-  line_point?: [number, number];
-  /**
-   * The distance of B to the left of the rod's line through C, of an inverted slider-crank.
-   */
-  offset?: number;
-  /**
-   * The assembly: of a four-bar 1 where D lies left of the line from C to B; of a slider-crank where D is the one of two
-   * places that lies further along the line; of an inverted one where the block is ahead of C along the rod.
-   */
-  t1: number;
-  /**
-   * The side of a four-bar's coupler point: 1 where P lies left of the line from C to D.
-   */
-  t2?: number;
 }
 /**
  * Name and version of the program.
@@ -1230,13 +1278,13 @@ export interface JobResult {
  */
 export interface JudgeAsk {
   ask: Ask;
-  linkage: NaturalCoordinates;
+  linkage: OneLoop;
 }
 /**
  * A linkage to be written as a file.
  */
 export interface LinkageAsk {
-  linkage: NaturalCoordinates;
+  linkage: OneLoop;
   /**
    * Its name.
    */
@@ -1249,7 +1297,7 @@ export interface LinkageAsk {
 export interface Opened {
   ask?: Ask;
   /**
-   * The four-bars among the candidates, better first.
+   * The candidates, better first.
    */
   candidates: Shown[];
   /**

@@ -2,7 +2,7 @@
 
 import { figure } from "../../src/report/html/player/svg.mjs";
 import { labelOf, unitAfter } from "./labels";
-import type { Box, Point, Shown } from "./messages";
+import { type Box, type Linkage, type Point, pivotsOf, type Shown } from "./messages";
 
 /** How good a figure is; a sign goes with each, for those who see no colour. */
 export type Grade = "good" | "fair" | "poor";
@@ -44,13 +44,18 @@ export function transmissionInWords(deg: number): Graded {
   return { grade: "poor", text: `${angle} (it jams)` };
 }
 
-/** The longest of ground, a, b, c, d and e. */
-export function longestOf({ A, B = [] as never, a, b, c, d, e }: Shown["linkage"]): number {
-  return Math.max(Math.hypot(B[0] - A[0], B[1] - A[1]), ...[a, b, c, d, e].map(Math.abs));
+/** The largest distance between two joints of one body: of ground, a, b, c, d and e, or of those that a linkage with a
+ * slider has. */
+export function longestOf(linkage: Linkage): number {
+  const { a, b, c, d, e, coupler_x: x, coupler_y: y, kind } = linkage;
+  const [[ax, ay], [bx, by] = [ax, ay]] = pivotsOf(linkage);
+  const beside = Math.hypot(x ?? 0, y ?? 0);
+  const beyond = kind === "slider-crank" ? Math.hypot((x ?? 0) - (b ?? 0), y ?? 0) : 0;
+  return Math.max(Math.hypot(bx - ax, by - ay), ...[a, b, c, d, e].map((one) => Math.abs(one ?? 0)), beside, beyond);
 }
 
 /** The longest link as a multiple of the path. */
-export function sizeInWords(linkage: Shown["linkage"], size: number, extent?: number): string {
+export function sizeInWords(linkage: Linkage, size: number, extent?: number): string {
   const times = (length: number) => Number((length / size).toPrecision(2));
   const whole = extent === undefined ? "" : `, whole ${times(extent)}\u00a0×`;
   return `longest link ${times(longestOf(linkage))} × the path${whole}`;
@@ -111,10 +116,9 @@ export function limitedBy(
   const { pivots } = limits;
   if (pivots) {
     const slack = 1e-3 * Math.hypot(pivots[2] - pivots[0], pivots[3] - pivots[1]);
-    const { A, B } = shown.linkage;
     const isAtRim = ([x, y]: Point) =>
       [x - pivots[0], y - pivots[1], pivots[2] - x, pivots[3] - y].some((d) => d < slack);
-    if (isAtRim(A) || isAtRim(B)) said.push("pivots_in");
+    if (pivotsOf(shown.linkage).some(isAtRim)) said.push("pivots_in");
   }
   return said.length > 0 ? `limited by: ${said.map(labelOf).join(", ")}` : "";
 }

@@ -3,6 +3,7 @@
 
 use crate::common::parse;
 use crate::motion::solved;
+use linkwright::internals::judge::practicality::sensitivity::{At, Crank, output_sensitivity};
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::mechanism::{
     AssemblyMode, Complex, InvertedSliderCrank, LoopKind, OneLoop, SliderCrank,
@@ -12,6 +13,7 @@ use linkwright::internals::record::Candidate;
 use linkwright::internals::report::grid::Colour;
 use linkwright::internals::report::html::report_html;
 use linkwright::internals::report::table::candidates_table;
+use linkwright::internals::task::Output;
 use std::f64::consts::PI;
 
 /// Draws a linkage of a kind whose crank turns fully with a transmission angle of 5 degrees at least.
@@ -131,6 +133,93 @@ fn offsets_from_the_ground_are_kept() {
     assert_eq!((best.input_offset_deg, best.output_offset), (Some(0.0), Some(0.0)));
     assert!((best.linkage.crank() - 1.0).abs() < 1e-8, "{}", best.linkage);
     assert!(best.requirements.iter().any(|row| row.name == "tolerance" && row.met));
+}
+
+/// The linkage with one of its dimensions changed: Ax, Ay, Bx, By, a, b, the block's offset, or an end of the rail moved across it.
+fn changed(linkage: &OneLoop, name: &str, by: f64, rail: [f64; 2]) -> OneLoop {
+    let shift = match name {
+        "Ax" | "Bx" => Complex::new(by, 0.0),
+        "Ay" | "By" => Complex::new(0.0, by),
+        _ => Complex::new(0.0, 0.0),
+    };
+    let (a, b) =
+        if name.starts_with('A') { (shift, Complex::new(0.0, 0.0)) } else { (Complex::new(0.0, 0.0), shift) };
+    let crank = linkage.crank() + if name == "a" { by } else { 0.0 };
+    let (pivot, offset, t1) = (linkage.crank_pivot() + a, linkage.coupler_offset(), linkage.assembly());
+    match linkage {
+        OneLoop::SliderCrank(l) => {
+            let (s, q) = (l.line_direction(), l.line_point());
+            let ends = [("rail_from", rail[0]), ("rail_to", rail[1])]
+                .map(|(end, place)| q + s * place + Complex::i() * s * if name == end { by } else { 0.0 });
+            let turned = (ends[1] - ends[0]).arg();
+            let coupler = l.coupler() + if name == "b" { by } else { 0.0 };
+            let made = SliderCrank::from_parts(pivot, [crank, coupler], (ends[0], turned), offset, t1);
+            OneLoop::SliderCrank(made.expect("a linkage"))
+        }
+        OneLoop::InvertedSliderCrank(l) => {
+            let h = l.offset() + if name == "offset" { by } else { 0.0 };
+            let made = InvertedSliderCrank::from_parts([pivot, l.block_pivot() + b], crank, h, offset, t1);
+            OneLoop::InvertedSliderCrank(made.expect("a linkage"))
+        }
+        OneLoop::FourBar(_) => unreachable!("no four-bar is drawn"),
+    }
+}
+
+#[test]
+fn sensitivities_of_outputs_agree_with_changed_dimensions() {
+    let classes = [
+        (LoopKind::SliderCrank, Output::Place),
+        (LoopKind::InvertedSliderCrank, Output::Place),
+        (LoopKind::InvertedSliderCrank, Output::Angle),
+    ];
+    for (kind, output) in classes {
+        for case in 0..8 {
+            let draws = &mut stream(33, case);
+            let linkage = drawn(kind, draws);
+            let angles: Vec<f64> = (0..6).map(|_| uniform(draws, -PI, PI)).collect();
+            let at: Vec<At> = angles
+                .iter()
+                .map(|&crank_angle| At { crank_angle, assembly: linkage.assembly(), is_free: false })
+                .collect();
+            let measured = |linkage: &OneLoop, angle: f64| {
+                let at = linkage.joints_with(angle, linkage.assembly()).expect("the crank turns fully");
+                match output {
+                    Output::Place => linkage.slider_place(&at).expect("a slider"),
+                    Output::Angle => (linkage.output_angle(&at).expect("an output link")
+                        - linkage.ground_angle())
+                    .to_degrees(),
+                }
+            };
+            // The rail's ends as the judge takes them: the least and the greatest place, from Q.
+            let from =
+                |l: &SliderCrank| ((linkage.crank_pivot() - l.line_point()) * l.line_direction().conj()).re;
+            let places: Vec<f64> = angles.iter().map(|angle| measured(&linkage, *angle)).collect();
+            let rail = linkage.slider_crank().map_or([0.0; 2], |l| {
+                let [low, high] =
+                    places.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| {
+                        [low.min(*place), high.max(*place)]
+                    });
+                [low + from(l), high + from(l)]
+            });
+            let felt = output_sensitivity(linkage, output, &at, (Crank::Stays, false)).expect("derivatives");
+            for dimension in &felt.dimensions {
+                let step = 1e-6;
+                let [up, down] = [step, -step].map(|by| changed(&linkage, dimension.name, by, rail));
+                let differences = angles.iter().map(|angle| {
+                    let apart = measured(&up, *angle) - measured(&down, *angle);
+                    let apart = if output == Output::Angle {
+                        (apart + 180.0).rem_euclid(360.0) - 180.0
+                    } else {
+                        apart
+                    };
+                    (apart / (2.0 * step)).abs()
+                });
+                let most = differences.fold(0.0, f64::max);
+                let near = (dimension.worst - most).abs() < 1e-5 * (1.0 + most);
+                assert!(near, "{kind} {output:?} {case} {}: {} {most}", dimension.name, dimension.worst);
+            }
+        }
+    }
 }
 
 /// The stroke and the time ratio by 36,000 positions.

@@ -6,12 +6,15 @@ use crate::motion::solved;
 use linkwright::internals::app::job::run::{Context, Job, run};
 use linkwright::internals::files::generator::FileKind;
 use linkwright::internals::files::linkage_file::{any_to_toml, parse_any};
+use linkwright::internals::judge::assess::assess;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::mechanism::{
     AssemblyMode, Complex, InvertedSliderCrank, LoopKind, OneLoop, SliderCrank, dot, xy,
 };
 use linkwright::internals::record::{Candidate, Record};
 use linkwright::internals::report::html::report_html;
+use linkwright::internals::synthesis::nearest::nearest_positions;
+use linkwright::internals::task::Problem;
 use linkwright::load_problem;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -254,6 +257,24 @@ fn a_record_with_a_stray_key_of_another_kind_is_refused() {
 }
 
 #[test]
+fn crank_angles_from_a_line_keep_the_root_of_its_sense() {
+    let line = (Complex::new(0.5, -0.7), 0.4);
+    let (pivot, offset) = (Complex::new(1.0, 2.0), Complex::new(2.0, 1.0));
+    let made = SliderCrank::from_parts(pivot, [1.0, 4.0], line, offset, AssemblyMode::Minus);
+    let linkage = OneLoop::SliderCrank(made.expect("a linkage"));
+    let angles: Vec<f64> = (0..18).map(|j| 0.4 + 5.0 * f64::from(j) / 17.0).collect();
+    let crank_deg: Vec<f64> = (0..18).map(|j| (5.0 * f64::from(j) / 17.0).to_degrees()).collect();
+    let more = format!(
+        "[task.path.timing]\ncrank_deg = {crank_deg:?}\noffset = \"ground\"\n[design]\nmechanism = \"slider-crank\"\n\
+         [solve]\ncandidates = 1\nadvice = false\n"
+    );
+    let record = solved(parse(&problem(&linkage, &angles, false, &more)).spec);
+    let best = &record.candidates[0];
+    assert!(best.accepted && best.error.rms_over_size < 1e-9, "{}", best.error.rms_over_size);
+    assert_eq!(verify(&record).expect("a record"), []);
+}
+
+#[test]
 fn a_four_bar_on_the_limit_of_its_link_ratio_has_a_slider_beside_it() {
     let linkage = slider_crank();
     let angles: Vec<f64> = (0..30).map(|j| 0.4 + 4.4 * f64::from(j) / 29.0).collect();
@@ -269,4 +290,49 @@ fn a_four_bar_on_the_limit_of_its_link_ratio_has_a_slider_beside_it() {
     assert_eq!(beside.linkage.kind(), LoopKind::SliderCrank);
     assert!(beside.accepted && beside.error.rms_over_size < 1e-9, "{}", beside.error.rms_over_size);
     assert_eq!(verify(&record).expect("a record"), []);
+}
+
+#[test]
+fn a_linkage_is_placed_where_it_comes_nearest_to_the_targets_of_its_own_curve() {
+    let angles: Vec<f64> = (0..24).map(|i| 0.3 + TAU * f64::from(i) / 24.0).collect();
+    for linkage in [slider_crank(), inverted()] {
+        let rms = |text: &str| {
+            let problem = Problem::new(parse(text).spec).expect("a task");
+            let (crank_deg, t1_at) = nearest_positions(&problem, linkage).expect("it closes");
+            assess(&problem, linkage, &crank_deg, &t1_at).expect("it closes").error.rms
+        };
+        let free = rms(&problem(&linkage, &angles, true, ""));
+        assert!(free < 1e-9, "{free}");
+        let degrees: Vec<f64> = angles.iter().map(|angle| angle.to_degrees() - 20.0).collect();
+        let timing = format!("timing = {{ crank_deg = {degrees:?}, offset = \"free\" }}\n");
+        let timed = rms(&problem(&linkage, &angles, true, &timing));
+        assert!(timed < 1e-9, "{timed}");
+        // A body that lies on the coupler at an angle of its own.
+        let pose = |angle: &f64| {
+            let at = linkage.joints_with(*angle, linkage.assembly()).expect("it closes");
+            let [x, y] = xy(at.joints.coupler_point);
+            format!("[{x:?}, {y:?}, {:?}]", at.coupler.arg().to_degrees() + 33.0)
+        };
+        let poses: Vec<String> = angles.iter().take(8).map(pose).collect();
+        let moved = rms(&format!("format = 1\n[task.motion]\nposes = [{}]\n", poses.join(", ")));
+        assert!(moved < 1e-6, "{moved}");
+    }
+}
+
+#[test]
+fn every_problem_of_known_linkages_is_met_exactly() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/sliders");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let file = load_problem(&path, &[]).expect("a problem");
+        let size = Problem::new(file.spec.clone()).expect("a task").task().size();
+        let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+        let record = run(&Job::from(file), &context).expect("a run").record;
+        let best = &record.candidates[0];
+        assert!(best.accepted && best.error.rms < 1e-9 * size, "{}: {}", path.display(), best.error.rms);
+        assert!(verify(&record).expect("a problem").is_empty(), "{}", path.display());
+        count += 1;
+    }
+    assert_eq!(count, 10);
 }

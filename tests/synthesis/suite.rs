@@ -257,7 +257,8 @@ fn answers_of_a_motion_are_compared_by_their_objective_beside_the_population_sea
     assert!((best.figure() - 104.250_851_098_746).abs() < 1e-9);
     // The objective from the figures of the record alone: all poses have an angle and the weight 1.
     let Known::Motion { angle_weight, .. } = lwg.known else { panic!("a motion") };
-    let of_angles = (angle_weight * errors.rms_deg.to_radians()).powi(2) * lwg.points as f64;
+    let of_angles =
+        (angle_weight * errors.rms_deg.expect("of poses").to_radians()).powi(2) * lwg.points as f64;
     assert!((best.sum_sq + of_angles - errors.objective).abs() < 1e-9 * errors.objective);
     assert!((errors.rms - (best.sum_sq / lwg.points as f64).sqrt()).abs() < 1e-12);
     assert_eq!((figures.left_out.len(), figures.left_out[0].name.as_str()), (1, "bulldozer-blade"));

@@ -297,16 +297,31 @@ fn linkages_with_a_slider_are_analysed_with_every_joint_and_the_slider() {
         let refused = linkwright(folder.path(), &["analyze", "it.toml", "--method", "algebraic"]);
         assert!(refused.code == 2 && refused.stderr.contains("for four-bars"), "{}", refused.stderr);
         for command in [
-            &["cognates", "it.toml"][..],
+            &["cognates", "it.toml", "--svg", "it.svg"][..],
             &["snap", "it.toml", "--grid", "1"],
             &["compare", "it.toml", "it.toml"],
             &["synth", "it.toml"],
         ] {
             let refused = linkwright(folder.path(), command);
             assert_eq!(refused.code, 2, "{command:?}: {}", refused.stderr);
-            let plain = ["slider-crank", "linkage file"].iter().any(|words| refused.stderr.contains(words));
+            let plain = ["slider-crank", "linkage file", "a linkage without a target", "of four-bars"];
+            let plain = plain.iter().any(|words| refused.stderr.contains(words));
             assert!(plain && !refused.stderr.contains("panicked"), "{command:?}: {}", refused.stderr);
         }
+        // A slider-crank has one cognate, an inverted one none.
+        let cognates = linkwright(folder.path(), &["cognates", "it.toml"]);
+        if kind == "slider-crank" {
+            assert!(cognates.code == 0 && cognates.stdout.contains("a 2.5  b 1.5"), "{}", cognates.stdout);
+            let again = linkwright(folder.path(), &["check", "it-cognate.toml"]);
+            assert_eq!(again.code, 0, "{}", again.stderr);
+        } else {
+            assert!(cognates.code == 2 && cognates.stderr.contains("four-bars and slider-cranks"));
+        }
+        // It is compared on any target.
+        let target = "format = 1\n[task.path]\npoints = [[1, 2], [2, 2], [1, 1]]\n";
+        fs::write(folder.path().join("target.toml"), target).expect("written");
+        let compared = linkwright(folder.path(), &["compare", "it.toml", "--target", "target.toml"]);
+        assert_eq!(compared.code, 0, "{}", compared.stderr);
         for command in [&["build", "it.toml"][..], &["export", "it.toml", "--format", "dxf-plates"]] {
             let run = linkwright(folder.path(), command);
             assert_eq!(run.code, 0, "{command:?}: {}", run.stderr);

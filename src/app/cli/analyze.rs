@@ -7,18 +7,19 @@ use crate::files::generator::FileKind;
 use crate::files::linkage_file;
 use crate::files::linkage_file::AnyLinkageFile;
 use crate::files::name;
-use crate::mechanism::Linkage;
 use crate::mechanism::analysis::driven::{MechanismRequest, analyze_mechanism};
 use crate::mechanism::analysis::{Request, analyze, full_turn};
 use crate::mechanism::four_bar::motion::CrankMotion;
+use crate::mechanism::{FourBar, Linkage, SliderCrank, Unit};
 use crate::report::analysis_csv::analysis_csv;
 use crate::report::analysis_sheets::analysis_svg;
 use crate::report::analysis_text::{analysis_head, analysis_table};
 use crate::report::cognates_sheet::cognates_svg;
 use crate::report::mechanism_sheet::mechanism_svg;
 use crate::report::mechanism_text::{mechanism_csv, mechanism_head, mechanism_table};
+use crate::report::scene::middle_position;
 use crate::report::text::clean;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The crank angles when none are asked for: every 30 degrees.
 const DEFAULT_POSITIONS: usize = 12;
@@ -101,10 +102,12 @@ pub fn cognates(options: &Cognates) -> Result<Ended, Ended> {
     let AnyLinkageFile { name, unit, linkage } = result::read_linkage(&options.linkage)?;
     let linkage = match linkage {
         Linkage::FourBar(linkage) => linkage,
+        Linkage::SliderCrank(linkage) => return cognate_of_a_slider_crank(options, &name, unit, &linkage),
         other => {
             let kind = linkage_file::kind_in_words(&other);
             let why = format!(
-                "it is {kind}, and cognates are of four-bars: give a file with [linkage] or [vector_loop]"
+                "it is {kind}, and cognates are of four-bars and slider-cranks: give a file with [linkage], [vector_loop] \
+                 or [slider_crank]"
             );
             return Err(refuse_path(&options.linkage, why));
         }
@@ -122,32 +125,75 @@ pub fn cognates(options: &Cognates) -> Result<Ended, Ended> {
             Err(e) => text.push_str(&format!("  at {place}: none ({e})\n")),
         }
     }
-    let mut written = Vec::new();
-    for (i, linkage) in found.iter().enumerate() {
+    let numbered = |(i, linkage): (usize, &FourBar)| {
         let name = name::with_suffix(&name, &format!("-cognate-{}", i + 1));
-        let path = options.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.toml"));
-        if path.exists() && !options.force {
-            let why = "exists already; give another folder with --out, or replace it with --force";
-            return Err(refuse(format!("{} {why}", path.display())));
-        }
-        written.push((path, FileKind::Linkage, linkage_file::to_toml(&name, unit, linkage)));
-    }
+        (format!("{name}.toml"), linkage_file::to_toml(&name, unit, linkage))
+    };
+    let mut written = cognate_files(options, found.iter().enumerate().map(numbered))?;
     if let Some(path) = &options.svg {
         written.push((path.clone(), FileKind::Svg, cognates_svg(&name, unit, &linkage, &found)));
     }
-    let output = Output::new([&options.linkage], options.force);
-    // Before the folder is made.
-    output.check(&written)?;
-    if let Some(out) = &options.out {
-        std::fs::create_dir_all(out).map_err(|e| refuse_io(out, e))?;
-    }
-    output.write(&written)?;
-    for (path, ..) in &written {
-        text.push_str(&format!("  Wrote {}\n", terminal::shown(path)));
-    }
+    text.push_str(&written_files(options, &written)?);
     terminal::answer(&format!(
         "The Roberts-Chebyshev cognates of {}: other linkages of the same coupler curve\n{text}",
         clean(&name)
     ));
     Ok(if found.is_empty() { Ended::Bad } else { Ended::Good })
+}
+
+/// Tells and writes the one cognate of a slider-crank, with t1 as it is in the middle of the crank's range.
+fn cognate_of_a_slider_crank(
+    options: &Cognates,
+    name: &str,
+    unit: Option<Unit>,
+    linkage: &SliderCrank,
+) -> Result<Ended, Ended> {
+    if options.svg.is_some() {
+        let why = "the drawing of cognates is of four-bars: leave --svg out";
+        return Err(refuse_path(&options.linkage, why.to_owned()));
+    }
+    let title = format!("The cognate of {}: the other slider-crank of the same coupler curve\n", clean(name));
+    let (angle, _) = middle_position(*linkage);
+    match linkage.cognate(angle) {
+        Ok(cognate) => {
+            let name = name::with_suffix(name, "-cognate");
+            let file = linkage_file::any_to_toml(&name, unit, &cognate.into());
+            let written = cognate_files(options, [(format!("{name}.toml"), file)])?;
+            let files = written_files(options, &written)?;
+            terminal::answer(&format!("{title}  at A: slider-crank\n     {cognate}\n{files}"));
+            Ok(Ended::Good)
+        }
+        Err(e) => {
+            terminal::answer(&format!("{title}  none ({e})\n"));
+            Ok(Ended::Bad)
+        }
+    }
+}
+
+/// Returns the linkage files of cognates, by their names and texts; one that exists already is refused.
+fn cognate_files(
+    options: &Cognates,
+    texts: impl IntoIterator<Item = (String, String)>,
+) -> Result<Vec<(PathBuf, FileKind, String)>, Ended> {
+    let file = |(name, text): (String, String)| {
+        let path = options.out.as_deref().unwrap_or(Path::new("")).join(name);
+        if path.exists() && !options.force {
+            let why = "exists already; give another folder with --out, or replace it with --force";
+            return Err(refuse(format!("{} {why}", path.display())));
+        }
+        Ok((path, FileKind::Linkage, text))
+    };
+    texts.into_iter().map(file).collect()
+}
+
+/// Writes the files of cognates, and returns the lines that say so.
+fn written_files(options: &Cognates, written: &[(PathBuf, FileKind, String)]) -> Result<String, Ended> {
+    let output = Output::new([&options.linkage], options.force);
+    // Before the folder is made.
+    output.check(written)?;
+    if let Some(out) = &options.out {
+        std::fs::create_dir_all(out).map_err(|e| refuse_io(out, e))?;
+    }
+    output.write(written)?;
+    Ok(written.iter().map(|(path, ..)| format!("  Wrote {}\n", terminal::shown(path))).collect())
 }

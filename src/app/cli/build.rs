@@ -41,7 +41,7 @@ struct Subject {
 
 impl Subject {
     fn of(options: &Options) -> Result<Self, Ended> {
-        Ok(match result::read_one_loop(&options.result)? {
+        Ok(match result::read(&options.result)? {
             Given::Linkage(file) => Subject {
                 title: clean(&file.name),
                 linkage: file.linkage,

@@ -15,7 +15,7 @@ pub fn run(options: &Export) -> Result<Ended, Ended> {
         let name = options.format.name();
         return Err(refuse(format!("{name} is not text: say where it goes with --out FILE.{name}")));
     }
-    let subject = match result::read_one_loop(&options.result)? {
+    let subject = match result::read(&options.result)? {
         Given::Linkage(file) => Subject::of_linkage(&file),
         Given::Run(run) => Subject::of_candidate(&run.record, run.one()?.candidate),
     };

@@ -28,7 +28,7 @@ const SUFFIX: &str = "-snapped";
 pub fn run(options: &Options) -> Result<Ended, Ended> {
     let begun = Instant::now();
     let stock = stock(options)?;
-    let subject = Subject::of(result::read(&options.result)?).map_err(|why| match why {
+    let subject = Subject::of(result::read_four_bar(&options.result)?).map_err(|why| match why {
         NoSubject::NoCandidate(none) => Ended::from(none),
         why => refuse(why),
     })?;

@@ -38,9 +38,9 @@ pub enum NotHere {
     /// Some crank angles are prescribed and others free.
     #[error("the studio has no free crank angles among given ones: run it with `linkwright synth`")]
     PartlyTimed,
-    /// Other kinds than four-bars are searched for.
-    #[error("the studio draws four-bars alone: run it with `linkwright synth`")]
-    Sliders,
+    /// A function of linkages with a slider.
+    #[error("the studio draws functions of four-bars alone: run it with `linkwright synth`")]
+    OfSliders,
     /// The ranges of a function are free.
     #[error("the studio has no free ranges of functions: run it with `linkwright synth`")]
     FreeRanges,
@@ -58,9 +58,9 @@ pub enum AskError {
     /// Too few poses or pairs in an edit, or too many.
     #[error("a target has {FEWEST_TARGETS} to {MOST_POINTS} {1}s here, and this one has {0}")]
     Targets(usize, &'static str),
-    /// An edit keeps a key that searches for other kinds than four-bars.
-    #[error("the studio draws four-bars alone: leave `design.mechanism` out")]
-    Sliders,
+    /// An edit asks for a function of linkages with a slider.
+    #[error("the studio draws functions of four-bars alone: leave `mechanism` out")]
+    OfSliders,
     /// An edit with a body has another number of angles than of points.
     #[error("{0} poses have {1} angles: `body.angle_deg` has one for each, null where only the place counts")]
     Angles(usize, usize),
@@ -289,8 +289,8 @@ impl Ask {
         }
         let text = self.problem_text()?;
         let problem = problem_file::parse("drawing", &text, None, &[]).map_err(AskError::Problem)?;
-        if !problem.spec.design.is_of_four_bars() {
-            return Err(AskError::Sliders);
+        if problem.spec.task.output.is_some() && !problem.spec.design.is_of_four_bars() {
+            return Err(AskError::OfSliders);
         }
         Ok((problem, text))
     }
@@ -301,8 +301,8 @@ impl Ask {
     /// [`NotHere`] if the studio cannot hold it.
     pub fn of(problem: &ProblemFile) -> Result<Ask, NotHere> {
         let ProblemSpec { task: path, require, solve, design } = &problem.spec;
-        if !design.is_of_four_bars() {
-            return Err(NotHere::Sliders);
+        if path.output.is_some() && !design.is_of_four_bars() {
+            return Err(NotHere::OfSliders);
         }
         if path.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
             return Err(NotHere::PartlyTimed);
@@ -333,7 +333,11 @@ impl Ask {
             weights: path.weight.clone(),
             timing: path.timing.clone().filter(|_| !is_function),
             raw: path.raw.clone().filter(|raw| raw.points.len() <= MOST_RAW),
+            mechanism: design.mechanism.clone(),
             types: require.types.clone(),
+            input: require.input,
+            stroke: require.stroke,
+            time_ratio: require.time_ratio,
             transmission_deg_min: require.transmission_deg_min,
             transmission_over: require.transmission_over,
             link_ratio_max: Some(require.link_ratio_max),
@@ -410,8 +414,8 @@ mod tests {
 
     #[test]
     fn every_problem_of_the_collection_is_carried_through() {
-        let (mut count, mut known, mut kinds) = (0, 0, [0; 3]);
-        for folder in ["examples", "literature", "exact", "motion", "function"] {
+        let (mut count, mut known, mut sliders, mut kinds) = (0, 0, 0, [0; 3]);
+        for folder in ["examples", "literature", "exact", "motion", "function", "sliders"] {
             for entry in std::fs::read_dir(root().join("problems").join(folder)).expect("a folder") {
                 let path = entry.expect("an entry").path();
                 if !path.extension().is_some_and(|e| e == "toml" || e == "csv") {
@@ -426,8 +430,10 @@ mod tests {
                     assert!(matches!(Ask::of(&problem), Err(NotHere::FreeRanges)), "{}", path.display());
                     continue;
                 }
-                if !problem.spec.design.is_of_four_bars() {
-                    assert!(matches!(Ask::of(&problem), Err(NotHere::Sliders)), "{}", path.display());
+                let has_sliders = !problem.spec.design.is_of_four_bars();
+                sliders += usize::from(has_sliders);
+                if has_sliders && problem.spec.task.output.is_some() {
+                    assert!(matches!(Ask::of(&problem), Err(NotHere::OfSliders)), "{}", path.display());
                     continue;
                 }
                 let ask = Ask::of(&problem).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
@@ -448,7 +454,7 @@ mod tests {
             }
         }
         assert!(count > 20 && known > 10, "{count} {known}");
-        assert!(kinds[1] >= 14 && kinds[2] >= 7, "{kinds:?}");
+        assert!(kinds[1] >= 14 && kinds[2] >= 7 && sliders >= 3, "{kinds:?} {sliders}");
     }
 
     #[test]

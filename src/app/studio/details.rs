@@ -12,7 +12,7 @@ use crate::app::job::run::Job;
 use crate::files::name::{self, NameError};
 use crate::judge::assess::{assess, to_raw};
 use crate::judge::verify::{Mismatch, verify};
-use crate::mechanism::{AssemblyMode, FourBar, LinkageError, NaturalCoordinates};
+use crate::mechanism::{AssemblyMode, LinkageKeys, NoLinkage, OneLoop};
 use crate::record::digest::ProblemError;
 use crate::record::{Candidate, Evaluations, ProblemRecord, Reason, Record};
 use crate::report::compare::{SortKey, UnknownKey};
@@ -66,7 +66,7 @@ pub struct Drawn {
     /// The edit that it answers.
     pub ask: Ask,
     /// The linkage.
-    pub linkage: NaturalCoordinates,
+    pub linkage: LinkageKeys,
     /// The crank angle at each target point, degrees.
     pub crank_deg: Vec<f64>,
     /// The assembly (1 or -1) at each point.
@@ -110,7 +110,7 @@ pub struct JudgeAsk {
     /// The edit.
     pub ask: Ask,
     /// The linkage.
-    pub linkage: NaturalCoordinates,
+    pub linkage: LinkageKeys,
 }
 
 /// A linkage that is wanted as a file.
@@ -244,16 +244,13 @@ pub(super) enum DetailsError {
     #[error("{name} has no candidate {rank}: it has {n}")]
     NoRank { name: String, rank: usize, n: usize },
     #[error(transparent)]
-    Linkage(#[from] LinkageError),
+    Linkage(#[from] NoLinkage),
     #[error("`crank_deg` and `t1_at` have one value for each of the {0} points")]
     Positions(usize),
     #[error("`t1_at` holds 1 and -1 alone")]
     Assembly,
     #[error("this linkage cannot be assembled at every point")]
     NotAssembled,
-    /// Plates are of four-bars.
-    #[error("plates and layers are computed for four-bars alone")]
-    OfAnotherKind,
     #[error("{0} takes no settings")]
     NoSettings(String),
     #[error("{0}, html, sheet, points, layers or archive")]
@@ -305,7 +302,7 @@ impl House {
     fn drawn(&self, drawn: &Drawn, with_costs: bool) -> Result<Found, DetailsError> {
         let file = drawn.ask.problem()?;
         let problem = Problem::new(file.spec.clone()).map_err(AskError::Task)?;
-        let linkage = FourBar::new(drawn.linkage)?;
+        let linkage = OneLoop::try_from(drawn.linkage.clone())?;
         let n = problem.task().len();
         if drawn.crank_deg.len() != n || drawn.t1_at.len() != n {
             return Err(DetailsError::Positions(n));
@@ -314,8 +311,7 @@ impl House {
         let t1_at: Vec<AssemblyMode> = drawn.t1_at.iter().map(assembly).collect::<Result<_, _>>()?;
         let asked = ProblemRecord::try_from(Job::from(file)).map_err(ProblemError::from)?;
         if let Some(record) = self.searches.finished.of(&asked.digest) {
-            let same =
-                |c: &Candidate| c.linkage.four_bar() == Some(&linkage) && c.crank_deg == drawn.crank_deg;
+            let same = |c: &Candidate| c.linkage == linkage && c.crank_deg == drawn.crank_deg;
             if let Some(index) = record.candidates.iter().position(same) {
                 let mut record = (*record).clone();
                 (record.problem.name, record.problem.unit) = (asked.name, asked.unit);
@@ -342,11 +338,11 @@ impl House {
     /// [`DetailsError`].
     pub(super) fn judged(&self, JudgeAsk { ask, linkage }: &JudgeAsk) -> Result<Shown, DetailsError> {
         let problem = Problem::new(ask.problem()?.spec).map_err(AskError::Task)?;
-        let linkage = FourBar::new(*linkage)?;
-        let positions = nearest_positions(&problem, &linkage);
+        let linkage = OneLoop::try_from(linkage.clone())?;
+        let positions = nearest_positions(&problem, linkage);
         let judged = positions.and_then(|(crank_deg, t1_at)| assess(&problem, linkage, &crank_deg, &t1_at));
         let candidate = judged.ok_or(DetailsError::NotAssembled)?;
-        Ok(Shown { rank: 1, ..Shown::of(&candidate).ok_or(DetailsError::OfAnotherKind)? })
+        Ok(Shown { rank: 1, ..Shown::of(&candidate) })
     }
 
     /// Returns the details of a linkage.
@@ -362,7 +358,7 @@ impl House {
             tolerance: path.tolerance.clone(),
             transmission_deg_min: require.transmission_deg_min,
             candidates: record.candidates.len(),
-            shown: Shown::of(found.candidate()).ok_or(DetailsError::OfAnotherKind)?,
+            shown: Shown::of(found.candidate()),
             summary: html::summary_markup(record),
             words: html::candidate_markup(record, *index).unwrap_or_default(),
         })

@@ -7,7 +7,7 @@ use super::jobs::{Jobs, Refusal};
 use super::shelf::ShelfError;
 use super::tab::Searches;
 use crate::files::name::NameError;
-use crate::mechanism::LinkageError;
+use crate::mechanism::NoLinkage;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use std::error::Error;
@@ -55,7 +55,7 @@ impl<E: Refusing> From<E> for Refused {
 
 impl Refusing for AskError {}
 impl Refusing for DetailsError {}
-impl Refusing for LinkageError {}
+impl Refusing for NoLinkage {}
 impl Refusing for NameError {}
 
 impl Refusing for ShelfError {

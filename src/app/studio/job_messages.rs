@@ -190,7 +190,7 @@ pub struct Opened {
     /// The problem.
     #[serde(flatten)]
     pub target: Target,
-    /// The four-bars among the candidates, better first.
+    /// The candidates, better first.
     pub candidates: Vec<Shown>,
     /// The names of the result's files.
     pub files: Vec<String>,
@@ -199,7 +199,7 @@ pub struct Opened {
 impl Opened {
     /// Opens a record; `files` are the names of its result's files.
     pub(super) fn new(record: Record, files: Vec<String>) -> Opened {
-        let candidates = record.candidates.iter().filter_map(Shown::of).collect();
+        let candidates = record.candidates.iter().map(Shown::of).collect();
         let target = Target::from(&record.problem);
         let file = ProblemFile::of(record.problem);
         let (ask, why_not) = match Ask::of(&file) {

@@ -38,7 +38,9 @@ pub(super) fn kept(spec: &ProblemSpec) -> BTreeMap<String, String> {
     let (mut kept, mut usual) = (BTreeMap::new(), RequireSpec::default());
     if let Ok(task) = task.to_task() {
         let given = bounds(design, &task);
-        kept = differing("design", &given, &toml::Table::new());
+        let mut others = given.clone();
+        others.remove("mechanism");
+        kept = differing("design", &others, &toml::Table::new());
         usual.longest_max = given.try_into().ok().and_then(|given| require.default_longest(&given, &task));
         if usual.longest_max.is_some() && require.longest_max.is_none() {
             kept.insert("require.longest_max".into(), "\"any\"".into());

@@ -3,13 +3,14 @@
 use super::pin_map::PinMap;
 use super::targets::{BodyAsk, FunctionAsk};
 use crate::files::problem_file::Expect;
-use crate::mechanism::{LinkageType, NaturalCoordinates, Unit};
+use crate::mechanism::{LinkageKeys, LinkageType, LoopKind, OneLoop, Unit};
 use crate::record::{AngleErrorRecord, Candidate, ExactLinkage, ExactRecord, ProblemRecord, Relaxation};
 use crate::report::exact;
 use crate::report::html::Drive;
 use crate::task::Sense;
+use crate::task::requirement::InputPolicy;
 use crate::task::spec::{
-    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TaskSpec,
+    ClosingPolicy, DirectionPolicy, Limits, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TaskSpec,
     TimingSpec, TransmissionOver,
 };
 use schemars::JsonSchema;
@@ -56,9 +57,21 @@ pub struct Ask {
     /// The digitised points that `points` were smoothed or resampled from; not read if they no longer are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub raw: Option<RawPoints>,
-    /// The types allowed; empty: any.
+    /// The kinds of linkages that are searched for; empty: four-bars.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mechanism: Vec<LoopKind>,
+    /// The types allowed of four-bars; empty: any.
     #[serde(default)]
     pub types: Vec<LinkageType>,
+    /// The range of the input.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub input: InputPolicy,
+    /// The least and the greatest distance between the ends of a slider-crank's slider.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stroke: Option<Limits>,
+    /// The least and the greatest ratio of the crank's angles for the slower and the quicker way of a slider-crank's slider.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_ratio: Option<Limits>,
     /// The least transmission angle, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub transmission_deg_min: Option<f64>,
@@ -115,7 +128,7 @@ pub struct Ask {
     pub held: Option<u64>,
     /// A linkage to begin with: it is fitted from where it is, and stays among the answers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub from: Option<NaturalCoordinates>,
+    pub from: Option<LinkageKeys>,
     /// The target has nothing to do with the one before: nothing is to follow it.
     #[serde(default, skip_serializing_if = "is_default")]
     pub fresh: bool,
@@ -240,8 +253,8 @@ pub struct Shown {
     /// Its number: it keeps it while it follows the hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub number: Option<u64>,
-    /// The linkage, as in linkage files.
-    pub linkage: NaturalCoordinates,
+    /// The linkage, as in records.
+    pub linkage: OneLoop,
     /// Its drive over its motion.
     pub drive: Drive,
     /// The crank angle at each target point, degrees.
@@ -266,9 +279,9 @@ pub struct Shown {
     /// The errors of the body's angle in a motion, of the output in a function.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub angle: Option<AngleErrorRecord>,
-    /// Its type.
+    /// Its type; of a linkage with a slider its kind.
     #[serde(rename = "type")]
-    pub linkage_type: LinkageType,
+    pub type_name: &'static str,
     /// The worst transmission angle, degrees from 0 to 90.
     pub transmission_deg: f64,
     /// Longest over shortest link.
@@ -287,29 +300,28 @@ pub struct Shown {
 
 impl Shown {
     /// Returns a candidate that follows the hand under a number.
-    pub(super) fn numbered((number, candidate): (&u64, &Candidate)) -> Option<Shown> {
-        Some(Shown { number: Some(*number), ..Shown::of(candidate)? })
+    pub(super) fn numbered((number, candidate): (&u64, &Candidate)) -> Shown {
+        Shown { number: Some(*number), ..Shown::of(candidate) }
     }
 
     /// Returns a real linkage through nine points that is judged.
-    pub(super) fn exact(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Option<Shown> {
-        Some(Shown {
+    pub(super) fn exact(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Shown {
+        Shown {
             rank,
             ability: Some(exact::ability(linkage).into()),
             certified_within: linkage.certified.map(|certified| certified.radius),
-            ..Shown::of(judged)?
-        })
+            ..Shown::of(judged)
+        }
     }
 
-    /// Returns a candidate ready to be played; `None` of a linkage with a slider, which this page does not play.
-    pub(super) fn of(candidate: &Candidate) -> Option<Shown> {
-        let (linkage, linkage_type) = (candidate.linkage.four_bar()?, candidate.linkage_type?);
+    /// Returns a candidate ready to be played.
+    pub(super) fn of(candidate: &Candidate) -> Shown {
         let missed = candidate.requirements.iter().filter(|r| !r.met).map(|r| r.name.clone());
-        Some(Shown {
+        Shown {
             rank: candidate.rank,
             number: None,
-            linkage: linkage.natural_coordinates(),
-            drive: Drive::new(linkage, &candidate.crank_deg, &candidate.t1_at),
+            linkage: candidate.linkage,
+            drive: Drive::new(candidate.linkage, &candidate.crank_deg, &candidate.t1_at),
             crank_deg: candidate.crank_deg.clone(),
             t1_at: candidate.t1_at.iter().map(|t1| i64::from(*t1)).collect(),
             worst: candidate.error.max_at,
@@ -319,14 +331,14 @@ impl Shown {
             output_offset_deg: candidate.output_offset_deg,
             sense: candidate.sense,
             angle: candidate.error.of_link().copied(),
-            linkage_type,
+            type_name: candidate.type_name(),
             transmission_deg: candidate.transmission_deg.worst,
             link_ratio: candidate.link_ratio,
             accepted: candidate.accepted,
             unmet: missed.collect(),
             ability: None,
             certified_within: candidate.certified.map(|certified| certified.radius),
-        })
+        }
     }
 }
 
@@ -362,7 +374,7 @@ pub struct LinkageAsk {
     #[serde(default)]
     pub unit: Option<Unit>,
     /// The linkage.
-    pub linkage: NaturalCoordinates,
+    pub linkage: LinkageKeys,
 }
 
 /// The kind of a text.

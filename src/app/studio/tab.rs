@@ -10,7 +10,7 @@ use super::pin_map::PinMap;
 use super::status::{ended, under_way};
 use crate::app::job::run::{Context, Job, run};
 use crate::judge::assess::assess;
-use crate::mechanism::FourBar;
+use crate::mechanism::OneLoop;
 use crate::record::{Candidate, ExactRecord, Record, Relaxation};
 use crate::synthesis::continuation::Exact;
 use crate::synthesis::live::nine::Nine;
@@ -190,7 +190,7 @@ impl Tab {
             Some((counted, shown)) => (Some(counted.clone()), shown.clone()),
             None => {
                 let all = self.session.numbers().iter().zip(self.session.candidates());
-                (None, all.filter_map(Shown::numbered).collect())
+                (None, all.map(Shown::numbered).collect())
             }
         };
         let (version, said) = (self.version, said.into());
@@ -223,7 +223,7 @@ impl Tab {
             self.session.clear();
         }
         self.session.hold(ask.held);
-        if let Some(linkage) = ask.from.and_then(|from| FourBar::new(from).ok()) {
+        if let Some(linkage) = ask.from.and_then(|from| OneLoop::try_from(from).ok()) {
             self.session.begin(&problem, &linkage);
         }
         self.follow(&problem);
@@ -328,7 +328,7 @@ impl Tab {
 /// Returns all real linkages that follow the hand, with their counts; they are judged already.
 fn all_followed(exact: &Exact) -> (Counted, Vec<Shown>) {
     let judged = exact.classes.iter().map(|class| &class.best).zip(&exact.record.linkages);
-    let shown = (1..).zip(judged).filter_map(|(rank, (best, linkage))| Shown::exact(best, rank, linkage));
+    let shown = (1..).zip(judged).map(|(rank, (best, linkage))| Shown::exact(best, rank, linkage));
     (Counted::of(&exact.record), shown.collect())
 }
 
@@ -336,7 +336,7 @@ fn all_followed(exact: &Exact) -> (Counted, Vec<Shown>) {
 fn all_of(problem: &Problem, exact: &ExactRecord) -> (Counted, Vec<Shown>) {
     let shown = (1..).zip(&exact.linkages).filter_map(|(rank, one)| {
         let judged = assess(problem, one.linkage, &one.crank_deg, &one.t1_at)?;
-        Shown::exact(&judged, rank, one)
+        Some(Shown::exact(&judged, rank, one))
     });
     (Counted::of(exact), shown.collect())
 }

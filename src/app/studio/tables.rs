@@ -10,11 +10,14 @@ pub(super) type TableKeys = (&'static str, &'static [&'static str]);
 /// The tables before the task and after it, in the order in which they are written.
 pub(super) const HEAD: TableKeys = ("", &["name", "source", "unit"]);
 pub(super) const ASKED: [TableKeys; 3] = [
-    ("design", &[]),
+    ("design", &["mechanism"]),
     (
         "require",
         &[
             "type",
+            "input",
+            "stroke",
+            "time_ratio",
             "transmission_deg_min",
             "link_ratio_max",
             "pivots_in",

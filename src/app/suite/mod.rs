@@ -320,6 +320,9 @@ impl Runner<'_> {
 /// Returns the population searches that suit a problem, or the reason why there are none.
 fn populations_of(spec: &ProblemSpec) -> Result<[Method; 2], &'static str> {
     let task = &spec.task;
+    if !spec.design.is_of_four_bars() {
+        return Err("population searches are of four-bars");
+    }
     if task.output.as_ref().is_some_and(|output| output.ranges.is_free()) {
         return Err("population searches do not take free ranges");
     }
@@ -331,10 +334,11 @@ fn populations_of(spec: &ProblemSpec) -> Result<[Method; 2], &'static str> {
 
 /// Returns the errors of an answer of a motion or of a function; `None` for one of a path.
 fn motion_errors(problem: &Problem, candidate: &Candidate) -> Option<MotionErrors> {
-    let angle = candidate.error.of_link()?;
+    problem.task().body()?;
     // The sum of squares even where the largest deviation is minimised: what is known is one.
     let objective = searched(problem, candidate);
-    Some(MotionErrors { objective, rms: candidate.error.rms, rms_deg: angle.rms_deg })
+    let rms_deg = candidate.error.of_link().map(|angle| angle.rms_deg);
+    Some(MotionErrors { objective, rms: candidate.error.rms, rms_deg })
 }
 
 /// Returns the smallest accepted answer of all runs, if it is smaller than the best known.

@@ -42,7 +42,7 @@ pub fn evaluate(problem: &Problem, published: &Published) -> Option<Candidate> {
     let vector: &[f64; 9] = published.vector.as_slice().try_into().ok()?;
     let judged = |assembly: AssemblyMode| {
         let linkage = linkage_of(vector, assembly)?;
-        let (crank_deg, assemblies) = nearest_positions(problem, &linkage)?;
+        let (crank_deg, assemblies) = nearest_positions(problem, linkage)?;
         assess(problem, linkage, &crank_deg, &assemblies)
     };
     match published.t1 {

@@ -7,8 +7,9 @@ use crate::files::toml_text::TomlText;
 use crate::mechanism::{FLAT_TOLERANCE, LoopKind};
 use crate::task::Output;
 use crate::task::region::Region;
-use crate::task::spec::{DesignSpec, Limits, Method, Objective, RequireSpec, SolveSpec, TaskSpec};
+use crate::task::spec::{DesignSpec, Limits, RequireSpec, SolveSpec, TaskSpec};
 use crate::task::values::OneOrMore;
+use crate::task::without_sliders::WithoutSliders;
 
 /// Two quantities that should agree may differ by this part of their scale: a person types few digits.
 const TYPED_DIGITS: f64 = 1e-6;
@@ -41,19 +42,20 @@ fn kinds_of(raw: &RawDesign, of_places: bool) -> Vec<LoopKind> {
     let mut kinds = raw.mechanism.as_ref().map_or_else(silent, |kinds| kinds.0.clone());
     kinds.sort_unstable();
     kinds.dedup();
-    if kinds == [LoopKind::FourBar] { Vec::new() } else { kinds }
+    // A list of four-bars for places is refused later.
+    if kinds == [LoopKind::FourBar] && !of_places { Vec::new() } else { kinds }
 }
 
-/// Refuses an empty list of kinds, and kinds with a slider where they are not searched for: with free ranges of a
-/// function, with exact targets, with free crank angles among prescribed ones, by other methods than least squares, and for
-/// the largest deviation; of a function also kinds that have no such output.
+/// Refuses keys that go with no kind that is searched for: an empty list of kinds, a line or a stroke without a slider-crank, a
+/// kind that has no such output, and sliders where they are not searched for ([`WithoutSliders`]).
 pub(super) fn of_kinds(
     toml: &TomlText<'_>,
     raw: &RawDesign,
     (task, solve, require): (&TaskSpec, &SolveSpec, &RequireSpec),
 ) -> Checked<()> {
     let lines = [("line_deg", raw.line_deg.is_some()), ("line_point", raw.line_point.is_some())];
-    let has_line = kinds_of(raw, task.is_of_places()).contains(&LoopKind::SliderCrank);
+    let kinds = kinds_of(raw, task.is_of_places());
+    let has_line = kinds.contains(&LoopKind::SliderCrank);
     if let Some((key, _)) = lines.into_iter().find(|(_, given)| *given && !has_line) {
         let message = format!("{key} is about the line of a slider-crank, and none is searched for");
         return toml.refuse(
@@ -62,7 +64,6 @@ pub(super) fn of_kinds(
             "remove it, or write mechanism = \"slider-crank\"",
         );
     }
-    let kinds = kinds_of(raw, task.is_of_places());
     let asked = [("stroke", require.stroke.is_some()), ("time_ratio", require.time_ratio.is_some())];
     if let Some((key, _)) = asked.into_iter().find(|(_, given)| *given && kinds != [LoopKind::SliderCrank]) {
         let message = format!("{key} is about a slider-crank, and other kinds are searched for");
@@ -76,41 +77,18 @@ pub(super) fn of_kinds(
             "write mechanism = \"four-bar\"",
         );
     }
-    if let Some(output) = &task.output {
-        let has_output = |kind: &LoopKind| match output.output {
-            Output::Angle => *kind != LoopKind::SliderCrank,
-            Output::Place => *kind != LoopKind::FourBar,
+    if let Some(output) = task.output.as_ref().map(|output| output.output)
+        && let Some(kind) = kinds.iter().find(|kind| !output.is_of(**kind))
+    {
+        let (what, help) = match output {
+            Output::Angle => ("no output link that turns", "write output = [..], the places of its slider"),
+            Output::Place => ("no slider", "write output_deg = [..], the angles of its follower"),
         };
-        if let Some(kind) = kinds.iter().find(|kind| !has_output(kind)) {
-            let (what, help) = match output.output {
-                Output::Angle => {
-                    ("no output link that turns", "write output = [..], the places of its slider")
-                }
-                Output::Place => ("no slider", "write output_deg = [..], the angles of its follower"),
-            };
-            return toml.refuse("design.mechanism", format!("a {kind} has {what}"), help);
-        }
+        return toml.refuse("design.mechanism", format!("a {kind} has {what}"), help);
     }
     let Some(slider) = kinds.iter().find(|kind| **kind != LoopKind::FourBar) else { return Ok(()) };
-    let has_free_range = task.output.as_ref().is_some_and(|output| output.ranges.is_free());
-    let is_partly_timed = task.timing.as_ref().is_some_and(|timing| !timing.free.is_empty());
-    let of_populations = matches!(solve.method, Method::Genetic | Method::DifferentialEvolution);
-    let why = if has_free_range {
-        format!("\"{slider}\" is not searched for with a free range of a function")
-    } else if task.tolerance.iter().flatten().any(|tolerance| *tolerance == 0.0) {
-        format!("\"{slider}\" is not searched for with exact targets")
-    } else if is_partly_timed {
-        format!("\"{slider}\" is not searched for with free crank angles among prescribed ones")
-    } else if of_populations || solve.method == Method::Continuation {
-        format!(
-            "\"{slider}\" is searched for by least squares alone, not by method = \"{}\"",
-            solve.method.name()
-        )
-    } else if solve.objective == Objective::MaxDeviation {
-        format!("\"{slider}\" is fitted by least squares alone, not by the largest deviation")
-    } else {
-        return Ok(());
-    };
+    let Some(reason) = WithoutSliders::of(task, solve) else { return Ok(()) };
+    let why = format!("\"{slider}\" {reason}");
     if raw.mechanism.is_none() {
         return toml.refuse_key(
             "task.function",

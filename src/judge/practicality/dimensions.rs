@@ -130,87 +130,90 @@ impl Dimensions for OfOutput {
     }
 }
 
-/// The dimensions of a linkage with a slider whose output counts: the derivatives are those of the slider's place, or of the
-/// angle of the block from the ground line, degrees, as real parts.
-struct OfSliderOutput {
-    linkage: OneLoop,
-    output: Output,
-    rail: Option<OfSliderCrank>,
-}
-
 /// Returns the dimensions of a linkage whose output counts; `None` if it has no such output.
 pub(super) fn of_output(linkage: &OneLoop, output: Output, positions: &[At]) -> Option<Box<dyn Dimensions>> {
     match (*linkage, output) {
         (OneLoop::FourBar(linkage), Output::Angle) => Some(Box::new(OfOutput(linkage))),
         (OneLoop::FourBar(_), Output::Place) | (OneLoop::SliderCrank(_), Output::Angle) => None,
-        (OneLoop::SliderCrank(of), Output::Place) => {
-            let rail = Some(OfSliderCrank::new(of, positions));
-            Some(Box::new(OfSliderOutput { linkage: *linkage, output, rail }))
+        (OneLoop::SliderCrank(linkage), Output::Place) => {
+            Some(Box::new(OfSliderPlace(OfSliderCrank::new(linkage, positions))))
         }
-        (OneLoop::InvertedSliderCrank(_), _) => {
-            Some(Box::new(OfSliderOutput { linkage: *linkage, output, rail: None }))
-        }
+        (OneLoop::InvertedSliderCrank(linkage), output) => Some(Box::new(OfBlock { linkage, output })),
     }
 }
 
-impl Dimensions for OfSliderOutput {
+/// Returns a derivative of an output as the real part of a column.
+fn real(value: f64) -> Complex {
+    Complex::new(value, 0.0)
+}
+
+/// The dimensions of a slider-crank whose output counts: the derivatives are those of the slider's place, as real parts.
+struct OfSliderPlace(OfSliderCrank);
+
+impl Dimensions for OfSliderPlace {
     fn names(&self) -> Vec<&'static str> {
-        match self.rail {
-            Some(_) => vec!["Ax", "Ay", "a", "b", "rail_from", "rail_to"],
-            None => vec!["Ax", "Ay", "Bx", "By", "a", "offset"],
-        }
+        vec!["Ax", "Ay", "a", "b", "rail_from", "rail_to"]
     }
 
     fn columns(&self, at: &At) -> Option<Columns> {
-        let real = |value: f64| Complex::new(value, 0.0);
-        match (&self.linkage, &self.rail) {
-            (OneLoop::SliderCrank(linkage), Some(rail)) => {
-                let linkage = SliderLinkage::with_assembly(*linkage, at.assembly);
-                let (mut shape, by_crank) = linkage.gradient(at.crank_angle)?;
-                // The place counts from A's foot on the line: y - <A - Q, s>.
-                let s = linkage.line_direction();
-                let lag = SliderLinkage::crank_pivot(&linkage) - linkage.line_point();
-                for (k, moved) in [(0, -s.re), (1, -s.im), (4, s.re), (5, s.im), (6, -dot(lag, turned(s)))] {
-                    shape[k].place += moved;
-                }
-                let [ax, ay, a, b, qx, qy, turn, ..] = shape.map(|column| real(column.place));
-                let [from, to] = rail.by_ends([qx, qy], turn);
-                Some(([ax, ay, a, b, from, to, ZERO, ZERO, ZERO], real(by_crank.place)))
-            }
-            (OneLoop::InvertedSliderCrank(linkage), _) => {
-                let linkage = SliderLinkage::with_assembly(*linkage, at.assembly);
-                let (shape, by_crank) = linkage.gradient(at.crank_angle)?;
-                let coupler = linkage.position(at.crank_angle).joints()?.coupler;
-                let of = |column: &SliderColumn| match self.output {
-                    Output::Place => column.place,
-                    Output::Angle => (cross(coupler, column.coupler) / coupler.norm_sqr()).to_degrees(),
-                };
-                let mut columns = [ZERO; MOST];
-                columns.iter_mut().zip(&shape[..6]).for_each(|(by, column)| *by = real(of(column)));
-                if self.output == Output::Angle {
-                    // It counts from the ground line.
-                    let turned = self.of_ground();
-                    columns.iter_mut().zip(turned).for_each(|(by, turn)| *by -= real(turn.to_degrees()));
-                }
-                Some((columns, real(of(&by_crank))))
-            }
-            _ => None,
+        let linkage = SliderLinkage::with_assembly(self.0.linkage, at.assembly);
+        let (mut shape, by_crank) = linkage.gradient(at.crank_angle)?;
+        // The place counts from A's foot on the line: y - <A - Q, s>.
+        let s = linkage.line_direction();
+        let lag = SliderLinkage::crank_pivot(&linkage) - linkage.line_point();
+        for (k, moved) in [(0, -s.re), (1, -s.im), (4, s.re), (5, s.im), (6, -dot(lag, turned(s)))] {
+            shape[k].place += moved;
         }
+        let [ax, ay, a, b, qx, qy, turn, ..] = shape.map(|column| real(column.place));
+        let [from, to] = self.0.by_ends([qx, qy], turn);
+        Some(([ax, ay, a, b, from, to, ZERO, ZERO, ZERO], real(by_crank.place)))
     }
 
     fn of_ground(&self) -> [f64; MOST] {
-        match (&self.linkage, &self.rail) {
-            (OneLoop::InvertedSliderCrank(linkage), _) => Dimensions::of_ground(linkage),
-            (_, Some(rail)) => rail.of_ground(),
-            _ => [0.0; MOST],
+        self.0.of_ground()
+    }
+
+    fn by_ground(&self, _: &[Complex]) -> Option<Complex> {
+        None
+    }
+}
+
+/// The dimensions of an inverted slider-crank whose output counts: the derivatives are those of the block's place along the
+/// coupler, or of its angle from the ground line, degrees, as real parts.
+struct OfBlock {
+    linkage: InvertedSliderCrank,
+    output: Output,
+}
+
+impl Dimensions for OfBlock {
+    fn names(&self) -> Vec<&'static str> {
+        vec!["Ax", "Ay", "Bx", "By", "a", "offset"]
+    }
+
+    fn columns(&self, at: &At) -> Option<Columns> {
+        let linkage = SliderLinkage::with_assembly(self.linkage, at.assembly);
+        let (shape, by_crank) = linkage.gradient(at.crank_angle)?;
+        let coupler = linkage.position(at.crank_angle).joints()?.coupler;
+        let of = |column: &SliderColumn| match self.output {
+            Output::Place => column.place,
+            Output::Angle => (cross(coupler, column.coupler) / coupler.norm_sqr()).to_degrees(),
+        };
+        let mut columns = [ZERO; MOST];
+        columns.iter_mut().zip(&shape[..6]).for_each(|(by, column)| *by = real(of(column)));
+        if self.output == Output::Angle {
+            // It counts from the ground line.
+            let turned = self.of_ground();
+            columns.iter_mut().zip(turned).for_each(|(by, turn)| *by -= real(turn.to_degrees()));
         }
+        Some((columns, real(of(&by_crank))))
+    }
+
+    fn of_ground(&self) -> [f64; MOST] {
+        Dimensions::of_ground(&self.linkage)
     }
 
     fn by_ground(&self, shifts: &[Complex]) -> Option<Complex> {
-        match &self.linkage {
-            OneLoop::InvertedSliderCrank(linkage) => Dimensions::by_ground(linkage, shifts),
-            _ => None,
-        }
+        Dimensions::by_ground(&self.linkage, shifts)
     }
 }
 

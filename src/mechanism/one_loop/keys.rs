@@ -2,7 +2,7 @@
 
 use super::{LoopKind, OneLoop};
 use crate::mechanism::{
-    AssemblyMode, CouplerSide, FourBar, InvertedSliderCrank, InvertedSliderCrankParameters,
+    AssemblyMode, CouplerSide, FourBar, InvertedSliderCrank, InvertedSliderCrankParameters, LinkageError,
     NaturalCoordinates, SliderCrank, SliderCrankParameters,
 };
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
@@ -60,60 +60,74 @@ impl Serialize for OneLoop {
     }
 }
 
-/// A linkage as it stands in records: every key of every kind.
-#[derive(Deserialize, schemars::JsonSchema)]
+/// A linkage by its keys, which may be no linkage: every key of every kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "OneLoop")]
-struct Keys {
+pub struct LinkageKeys {
     /// The kind; absent of a four-bar.
-    #[serde(default)]
-    kind: Option<LoopKind>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<LoopKind>,
     /// The fixed pivot of the crank.
     #[serde(rename = "A")]
-    crank_pivot: [f64; 2],
+    pub crank_pivot: [f64; 2],
     /// The fixed pivot of a four-bar's follower, or of the block of an inverted slider-crank.
-    #[serde(rename = "B", default)]
-    second_pivot: Option<[f64; 2]>,
+    #[serde(rename = "B", default, skip_serializing_if = "Option::is_none")]
+    pub second_pivot: Option<[f64; 2]>,
     /// |AC|.
-    a: f64,
+    pub a: f64,
     /// |CD| of a four-bar and of a slider-crank.
-    #[serde(default)]
-    b: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub b: Option<f64>,
     /// |BD| of a four-bar.
-    #[serde(default)]
-    c: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub c: Option<f64>,
     /// |CP| of a four-bar.
-    #[serde(default)]
-    d: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub d: Option<f64>,
     /// |DP| of a four-bar.
-    #[serde(default)]
-    e: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub e: Option<f64>,
     /// Q, a point of a slider-crank's line, from which the slider's place counts.
-    #[serde(default)]
-    line_point: Option<[f64; 2]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line_point: Option<[f64; 2]>,
     /// The direction of a slider-crank's line from the x axis, degrees.
-    #[serde(default)]
-    line_deg: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line_deg: Option<f64>,
     /// The distance of B to the left of the rod's line through C, of an inverted slider-crank.
-    #[serde(default)]
-    offset: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<f64>,
     /// P along the coupler from C, of kinds with a slider.
-    #[serde(default)]
-    coupler_x: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coupler_x: Option<f64>,
     /// P to the left of the coupler, of kinds with a slider.
-    #[serde(default)]
-    coupler_y: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coupler_y: Option<f64>,
     /// The assembly: of a four-bar 1 where D lies left of the line from C to B; of a slider-crank where D is the one of two
     /// places that lies further along the line; of an inverted one where the block is ahead of C along the rod.
     #[schemars(with = "i64")]
-    t1: AssemblyMode,
+    pub t1: AssemblyMode,
     /// The side of a four-bar's coupler point: 1 where P lies left of the line from C to D.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<i64>")]
-    t2: Option<CouplerSide>,
+    pub t2: Option<CouplerSide>,
 }
 
-impl Keys {
+/// The reason why keys are no linkage.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoLinkage {
+    /// The kind has no such key.
+    #[error("a {0} has no key `{1}`")]
+    Stray(LoopKind, &'static str),
+    /// A key of the kind is absent.
+    #[error("missing field `{0}`")]
+    Missing(&'static str),
+    /// The values are those of no linkage.
+    #[error(transparent)]
+    Linkage(#[from] LinkageError),
+}
+
+impl LinkageKeys {
     /// Returns the keys that are there although the kind has none of them.
     fn stray(&self, kind: LoopKind) -> Option<&'static str> {
         let (four_bar, slider, inverted) =
@@ -136,18 +150,19 @@ impl Keys {
     }
 }
 
-impl<'de> Deserialize<'de> for OneLoop {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        fn given<T, E: Error>(value: Option<T>, key: &'static str) -> Result<T, E> {
-            value.ok_or_else(|| E::missing_field(key))
+impl TryFrom<LinkageKeys> for OneLoop {
+    type Error = NoLinkage;
+
+    fn try_from(keys: LinkageKeys) -> Result<Self, NoLinkage> {
+        fn given<T>(value: Option<T>, key: &'static str) -> Result<T, NoLinkage> {
+            value.ok_or(NoLinkage::Missing(key))
         }
-        let keys = Keys::deserialize(deserializer)?;
         let kind = keys.kind.unwrap_or(LoopKind::FourBar);
         if let Some(key) = keys.stray(kind) {
-            return Err(D::Error::custom(format!("a {kind} has no key `{key}`")));
+            return Err(NoLinkage::Stray(kind, key));
         }
         let (crank_pivot, crank, assembly) = (keys.crank_pivot, keys.a, keys.t1);
-        let found = match kind {
+        Ok(match kind {
             LoopKind::FourBar => FourBar::new(NaturalCoordinates {
                 crank_pivot,
                 follower_pivot: given(keys.second_pivot, "B")?,
@@ -158,8 +173,8 @@ impl<'de> Deserialize<'de> for OneLoop {
                 follower_side: given(keys.e, "e")?,
                 assembly,
                 side: given(keys.t2, "t2")?,
-            })
-            .map(OneLoop::FourBar),
+            })?
+            .into(),
             LoopKind::SliderCrank => SliderCrank::new(SliderCrankParameters {
                 crank_pivot,
                 crank,
@@ -169,8 +184,8 @@ impl<'de> Deserialize<'de> for OneLoop {
                 coupler_x: given(keys.coupler_x, "coupler_x")?,
                 coupler_y: given(keys.coupler_y, "coupler_y")?,
                 assembly,
-            })
-            .map(OneLoop::SliderCrank),
+            })?
+            .into(),
             LoopKind::InvertedSliderCrank => InvertedSliderCrank::new(InvertedSliderCrankParameters {
                 crank_pivot,
                 block_pivot: given(keys.second_pivot, "B")?,
@@ -179,10 +194,15 @@ impl<'de> Deserialize<'de> for OneLoop {
                 coupler_x: given(keys.coupler_x, "coupler_x")?,
                 coupler_y: given(keys.coupler_y, "coupler_y")?,
                 assembly,
-            })
-            .map(OneLoop::InvertedSliderCrank),
-        };
-        found.map_err(D::Error::custom)
+            })?
+            .into(),
+        })
+    }
+}
+
+impl<'de> Deserialize<'de> for OneLoop {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        LinkageKeys::deserialize(deserializer)?.try_into().map_err(D::Error::custom)
     }
 }
 
@@ -192,6 +212,6 @@ impl schemars::JsonSchema for OneLoop {
     }
 
     fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        Keys::json_schema(generator)
+        LinkageKeys::json_schema(generator)
     }
 }

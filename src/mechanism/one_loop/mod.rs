@@ -5,6 +5,8 @@
 
 mod keys;
 
+pub use keys::{LinkageKeys, NoLinkage};
+
 use super::any::Mechanism;
 use super::four_bar::coupler_curve::SingleLoop;
 use super::four_bar::transmission::TransmissionExtremes;

@@ -14,11 +14,13 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | [`cognate`] | the other slider-crank that traces the same coupler curve |
 //! | [`conversion`] | a slider-crank as a chain, and back |
 //! | [`gradient`] | gradient of C, D, u, P and the slider's place by the parameters and the crank angle |
 //! | [`position`] | position analysis in closed form, and the rates of coupler and slider |
 //! | [`range`] | the range of the crank and the transmission angle |
 
+pub mod cognate;
 pub mod conversion;
 pub mod gradient;
 pub mod position;

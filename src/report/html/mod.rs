@@ -21,7 +21,7 @@
 //! All words are written here, for every candidate, so that the page can be read without its script too. The script
 //! draws, plays, sorts and shows one candidate at a time. Nothing in the page refers to a place on a network.
 
-use crate::mechanism::NaturalCoordinates;
+use crate::mechanism::LinkageKeys;
 use crate::record::{ProblemRecord, Record};
 use serde::Deserialize;
 
@@ -59,8 +59,12 @@ pub(super) const PLAYER: [&str; 8] = [
     include_str!("player/player.mjs"),
 ];
 /// The modules of the report alone: drawings of sliders, the body of a motion, the page.
-const REPORT: [&str; 3] =
-    [include_str!("player/slider_stage.mjs"), include_str!("player/body.mjs"), include_str!("report.mjs")];
+const REPORT: [&str; 4] = [
+    include_str!("player/guide.mjs"),
+    include_str!("player/slider_stage.mjs"),
+    include_str!("player/body.mjs"),
+    include_str!("report.mjs"),
+];
 /// The style sheet of the player, with its colours.
 pub(super) const PLAYER_STYLE: &str = include_str!("player/player.css");
 
@@ -114,7 +118,7 @@ pub struct Held {
     /// The problem; `None` if it has more than 1000 points, of which the report holds some.
     pub problem: Option<ProblemRecord>,
     /// The linkage; `None` if nothing was found.
-    pub linkage: Option<NaturalCoordinates>,
+    pub linkage: Option<LinkageKeys>,
 }
 
 /// Returns what a report holds; `None` if the text is no report, nor the data of one.
@@ -122,7 +126,7 @@ pub fn held(text: &str) -> Option<Held> {
     #[derive(Deserialize)]
     struct Shown {
         key: String,
-        linkage: NaturalCoordinates,
+        linkage: LinkageKeys,
     }
     #[derive(Deserialize)]
     struct Data {

@@ -8,16 +8,16 @@
 
 pub mod nine;
 
-use crate::judge::assess::assess;
+use crate::judge::assess::{assess, assess_again};
 use crate::judge::loosen::judged_under;
 use crate::judge::rank::{compare, distinct, distinct_places};
 use crate::judge::warm::start_at;
-use crate::mechanism::FourBar;
+use crate::mechanism::OneLoop;
 use crate::record::Candidate;
 use crate::synthesis::constants::live::{EFFORT, EVALUATIONS, FIRST_LOOK, FOLLOWING};
 use crate::synthesis::multistart::{judged, polish};
 use crate::synthesis::nearest::nearest_positions;
-use crate::synthesis::{Budget, Context, plan};
+use crate::synthesis::{Budget, Context, plan, sliders};
 use crate::task::Problem;
 
 /// The candidates that follow a target. Each has a number of its own, which it keeps while it follows.
@@ -56,7 +56,7 @@ impl Session {
 
     /// Begins anew with a linkage, each point met where it comes nearest, and holds it. Without effect if it cannot be
     /// assembled.
-    pub fn begin(&mut self, problem: &Problem, linkage: &FourBar) {
+    pub fn begin(&mut self, problem: &Problem, linkage: &OneLoop) {
         let positions = nearest_positions(problem, linkage);
         let judged = positions.and_then(|(crank_deg, t1_at)| assess(problem, linkage, &crank_deg, &t1_at));
         if let Some(candidate) = judged {
@@ -69,7 +69,7 @@ impl Session {
     /// Fits the candidates again, each from its present parameters, to a problem whose target or limits have moved.
     ///
     /// A candidate with another number of positions than there are points is placed anew on its own curve. One that
-    /// cannot follow (its loop opens at a point) is left out. The candidates are ranked anew, better first.
+    /// cannot follow (its loop opens at a point), or is of a kind that is not searched for, is left out. The candidates are ranked anew, better first.
     pub fn follow(&mut self, problem: &Problem, budget: &Budget<'_>) -> &[Candidate] {
         let kept = self.take_all();
         let follow = |(number, candidate): &(u64, Candidate)| {
@@ -125,12 +125,19 @@ pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
 
 /// Returns a candidate adapted to a problem: placed, fitted, judged.
 fn followed(problem: &Problem, candidate: &Candidate, budget: &Budget<'_>) -> Option<Candidate> {
-    let placed = placed(problem, candidate)?;
-    let start = start_at(problem, &placed)?;
-    let fit = polish(Context::new(problem, budget), start, EFFORT, EVALUATIONS);
-    let fitted = fit.end.and_then(|end| judged(problem, &end));
+    if !problem.spec().design.searches(candidate.linkage.kind()) {
+        return None;
+    }
+    let (placed, context) = (placed(problem, candidate)?, Context::new(problem, budget));
+    let (fitted, unfitted) = if placed.linkage.four_bar().is_some() {
+        let fit = polish(context, start_at(problem, &placed)?, EFFORT, EVALUATIONS);
+        let fitted = fit.end.and_then(|end| judged(problem, &end));
+        (fitted, judged(problem, &start_at(problem, &placed)?))
+    } else {
+        let (fitted, _) = sliders::refit(context, &placed, (EFFORT, EVALUATIONS, 0.0));
+        (fitted, assess_again(problem, &placed))
+    };
     // A fit that was cut short may have given up an acceptable linkage for a nearer one that is not.
-    let unfitted = judged(problem, &start_at(problem, &placed)?);
     [fitted, unfitted].into_iter().flatten().min_by(|one, other| compare(problem, one, other))
 }
 
@@ -139,7 +146,7 @@ fn placed(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
     if candidate.crank_deg.len() == problem.task().len() {
         return Some(candidate.clone());
     }
-    let (crank_deg, t1_at) = nearest_positions(problem, candidate.linkage.four_bar()?)?;
+    let (crank_deg, t1_at) = nearest_positions(problem, candidate.linkage)?;
     Some(Candidate { crank_deg, t1_at, ..candidate.clone() })
 }
 
@@ -148,6 +155,7 @@ mod tests {
     use super::*;
     use crate::app::job::run::{Context, Job, run};
     use crate::files::problem_file::parse;
+    use crate::mechanism::LoopKind;
     use std::sync::atomic::AtomicBool;
 
     /// Returns an egg of `n` points whose point `moved` lies `by` off.
@@ -197,6 +205,36 @@ mod tests {
     }
 
     #[test]
+    fn sliders_follow_and_go_where_they_are_not_searched_for() {
+        let cancel = AtomicBool::new(false);
+        let budget = Budget::new(&cancel, None);
+        let of_kind = |problem: &Problem, kind: &[LoopKind]| {
+            let mut spec = problem.spec().clone();
+            spec.design.mechanism = kind.to_vec();
+            Problem::new(spec).expect("a task")
+        };
+        for kind in [LoopKind::SliderCrank, LoopKind::InvertedSliderCrank] {
+            let before = of_kind(&egg(24, 0, 0.0), &[kind]);
+            let mut session = Session::default();
+            session.join(&before, searched(&before));
+            for step in 1..=5 {
+                let moved = of_kind(&egg(24, 4, 0.05 * f64::from(step)), &[kind]);
+                let first = session.follow(&moved, &budget)[0].clone();
+                assert_eq!(first.linkage.kind(), kind);
+                let again = assess(&moved, first.linkage, &first.crank_deg, &first.t1_at).expect("closed");
+                assert_eq!(again.error.sum_sq, first.error.sum_sq);
+            }
+            let moved = of_kind(&egg(24, 4, 0.25), &[kind]);
+            let afresh = searched(&moved)[0].error.sum_sq;
+            let followed = session.candidates()[0].error.sum_sq;
+            assert!(followed <= 1.5 * afresh, "{kind}: {followed} beside {afresh}");
+            // A point more is met where the linkage comes nearest to it.
+            assert!(!session.follow(&of_kind(&egg(25, 4, 0.25), &[kind]), &budget).is_empty());
+            assert!(session.follow(&egg(24, 4, 0.25), &budget).is_empty());
+        }
+    }
+
+    #[test]
     fn one_that_is_held_stays_under_its_number_whatever_is_found() {
         let cancel = AtomicBool::new(false);
         let budget = Budget::new(&cancel, None);
@@ -230,7 +268,7 @@ mod tests {
         let found = searched(&problem);
         let linkage = found[0].linkage.scaled(1.01).expect("a linkage");
         let mut session = Session::default();
-        session.begin(&problem, linkage.four_bar().expect("a four-bar"));
+        session.begin(&problem, &linkage);
         let before = session.candidates()[0].error.sum_sq;
         let after = session.follow(&problem, &Budget::new(&cancel, None))[0].error.sum_sq;
         assert!(after < before, "{after} {before}");

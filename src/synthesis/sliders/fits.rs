@@ -7,11 +7,11 @@ use crate::judge::warm::direction_and_offset;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{AssemblyMode, Complex, LoopKind};
 use crate::numbers::arithmetic::streams::{Stream, uniform};
-use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, solve};
+use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, finish, solve};
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord};
 use crate::synthesis::Context;
 use crate::synthesis::constants::Effort;
-use crate::synthesis::constants::sliders::{DRAWS, TURNING};
+use crate::synthesis::constants::sliders::{DRAWS, NEARLY, TURNING};
 use crate::task::forms::slider::fit::{Angles, SliderFit};
 use crate::task::forms::slider::limits::Limited;
 use crate::task::forms::slider::shape::{Closure, FRAME, OFFSET, SliderShape};
@@ -167,7 +167,11 @@ impl<'a> Fits<'a> {
         };
         let fit = self.fit::<R>(&limits, &start);
         let (positions, context) = (start.positions.clone(), self.context);
-        let end = solve(&fit, start.x, positions, &options, &|| context.stopped());
+        let stop = || context.stopped();
+        let mut end = solve(&fit, start.x, positions, &options, &stop);
+        if end.cost <= NEARLY * weight * radian * radian && end.outcome != LmOutcome::Exact {
+            finish(&fit, &mut end, &options, &stop);
+        }
         self.used += end.evaluations;
         let usable = !matches!(end.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
         let merit = end.cost + weight * end.violation * end.violation;

@@ -32,7 +32,7 @@ use crate::record::{Candidate, Evaluations, Reason};
 use crate::task::Problem;
 use crate::task::forms::slider::limits::Limited;
 use crate::task::forms::slider::shape::SHAPE;
-use crate::task::spec::{Method, Objective};
+use crate::task::without_sliders::WithoutSliders;
 pub(super) use fits::refit;
 use fits::{Fits, start_at};
 use guided::Guided;
@@ -63,14 +63,12 @@ pub(super) struct Sliders<'a> {
 pub(super) fn beside_four_bars(context: Context<'_>, limit: u64) -> (Vec<Candidate>, Evaluations) {
     let problem = context.problem;
     let mut spec = problem.spec().clone();
-    if !spec.design.is_of_four_bars() || !suits(problem) {
+    if !spec.design.is_of_four_bars() || WithoutSliders::of(&spec.task, &spec.solve).is_some() {
         return (Vec::new(), Evaluations::default());
     }
-    let slides = |kind: &LoopKind| match kind {
-        LoopKind::FourBar => false,
-        LoopKind::SliderCrank => !problem.is_function(),
-        LoopKind::InvertedSliderCrank => true,
-    };
+    let has_output =
+        |kind: &LoopKind| spec.task.output.as_ref().is_none_or(|output| output.output.is_of(*kind));
+    let slides = |kind: &LoopKind| *kind != LoopKind::FourBar && has_output(kind);
     let kinds: Vec<LoopKind> = LoopKind::ALL.into_iter().filter(slides).collect();
     (spec.design.mechanism, spec.solve.candidates) = (kinds.clone(), 1);
     let Ok(within) = problem.with(spec) else { return (Vec::new(), Evaluations::default()) };
@@ -78,18 +76,6 @@ pub(super) fn beside_four_bars(context: Context<'_>, limit: u64) -> (Vec<Candida
     let Some(search) = Sliders::of(context, &kinds) else { return (Vec::new(), Evaluations::default()) };
     let found = search.search(context, Allowance { limit, patience: limit });
     (found.candidates.into_iter().filter(|c| c.accepted).collect(), found.evaluations)
-}
-
-/// Returns whether linkages with a slider are searched for in a problem: by least squares, without exact targets, free crank
-/// angles among prescribed ones, or free ranges of a function.
-fn suits(problem: &Problem) -> bool {
-    let (task, solve) = (problem.task(), &problem.spec().solve);
-    let is_exact = task.tolerances().is_some_and(|list| list.contains(&0.0));
-    solve.objective == Objective::SumOfSquares
-        && matches!(solve.method, Method::Auto | Method::LeastSquares)
-        && !is_exact
-        && !task.is_partly_timed()
-        && task.ranges().are_written()
 }
 
 impl<'a> Sliders<'a> {

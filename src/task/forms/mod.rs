@@ -12,7 +12,7 @@
 //! | [`projection`] | variable projection for prescribed timing (the reduced form): the linear parameters are solved for inside |
 //! | [`reduced`] | admissibility of a problem for the search in reduced variables |
 //! | [`rows`] | requirements on a linkage, as smooth constraint functions g(shape, motion) >= 0 in units of length |
-//! | [`slider`] | linkages with a slider as least-squares problems: a path with prescribed or free timing |
+//! | [`slider`] | linkages with a slider as least-squares problems: a path or a motion with prescribed or free timing, or a function |
 //! | [`start`] | the start of a local search: a design vector with its discrete choices and the points' positions |
 //! | [`timed`] | prescribed timing as a least-squares problem in the design vector |
 //! | [`torus`] | free timing as a least-squares problem: the design vector and, for each point, a position of the linkage of its own |

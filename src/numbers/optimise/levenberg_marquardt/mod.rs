@@ -24,10 +24,12 @@
 
 pub(crate) mod block;
 mod derivatives;
+mod finish;
 mod system;
 
 pub use block::{ConstraintRow, MOST_OWN, PointBlock};
 pub use derivatives::derivative_error;
+pub use finish::finish;
 
 use super::damping::{Damping, clamped, moved};
 use super::ordered::Ordered;

@@ -22,7 +22,7 @@ export const CORNERS = [
 /** @typedef {{number: number, place: number | null, wanted: number | null, reached: number, error: number, tolerance: number | null}} BodyPose */
 
 /** The angle of a body that lies `frameDeg` from the direction C -> D, degrees within half a turn. */
-function bodyDeg({ C, D, u = [D[0] - C[0], D[1] - C[1]] }, frameDeg) {
+export function bodyDeg({ C, D, u = [D[0] - C[0], D[1] - C[1]] }, frameDeg) {
   return wrappedDeg(Math.atan2(u[1], u[0]) * DEGREES + frameDeg);
 }
 

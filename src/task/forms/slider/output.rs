@@ -21,7 +21,7 @@ use crate::task::{Output, Problem};
 /// The outputs of a function, as a fit sees them.
 #[derive(Clone, Debug)]
 pub struct Outputs {
-    /// What they are.
+    /// The quantity that is wanted.
     pub kind: Output,
     /// Each in the sense of +1: an angle in radians, or a place in sizes of the target.
     pub wanted: Vec<f64>,

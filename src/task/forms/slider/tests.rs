@@ -44,8 +44,11 @@ fn drawn(kind: LoopKind, case: u64) -> (Unknowns, SliderShape) {
     (x, SliderShape::of(kind, &x).expect("lengths are positive"))
 }
 
-fn limits(kind: LoopKind, turns: bool) -> Limited {
+fn limits(kind: LoopKind, turns: bool, ends: bool) -> Limited {
+    let bounds = |low, high| ends.then_some(Limits(low, high));
     let require = RequireSpec {
+        stroke: bounds(0.5, 1.0),
+        time_ratio: bounds(1.05, 1.2),
         transmission_deg_min: Some(20.0),
         link_ratio_max: 9.0,
         longest_max: Some(11.0),
@@ -74,7 +77,7 @@ fn derivatives_agree_with_differences() {
             let points: Vec<Complex> =
                 positions.iter().map(|p| shape.coupler_point(*p) + Complex::new(0.1, -0.05)).collect();
             let weights = [1.0, 2.0, 0.5, 1.0, 1.0, 3.0];
-            let limits = limits(kind, case % 3 == 0);
+            let limits = limits(kind, case % 3 == 0, case % 5 == 0);
             let phases: Vec<Complex> = positions.iter().map(|p| p[0]).collect();
             let offset = [AngleOffset::Free, AngleOffset::Fixed, AngleOffset::Ground][case as usize % 3];
             let mut turned = x;

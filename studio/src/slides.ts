@@ -1,0 +1,80 @@
+// Wishes of linkages with a slider, below the kind of linkage: they come with the second script.
+
+import { element } from "../../src/report/html/player/svg.mjs";
+import { byId } from "./ids";
+import type { Page } from "./kit";
+import { labelOf } from "./labels";
+import type { LoopKind, Task } from "./messages";
+
+/** The numbers that a slider-crank's slider has to keep: their fields, with the keys that ask for them. */
+const NUMBERS = [
+  ["slide-stroke", "stroke"],
+  ["slide-ratio", "time_ratio"],
+] as const;
+
+/** Whether linkages with a slider are searched for. */
+export const hasSliders = ({ mechanism }: Task) => (mechanism ?? []).some((kind) => kind !== "four-bar");
+
+/** What a motor on the crank asks of four-bars. */
+const MOTOR: Task["types"] = ["crank-rocker", "double-crank"];
+
+/** The same task for other kinds of linkages: a crank that is to turn fully stays so, and what other kinds have not goes. */
+export function ofKinds(task: Task, kinds: LoopKind[]): Task {
+  const { stroke, time_ratio, input: _, ...rest } = task;
+  const turns = task.input === "full-turn" || (task.types.length > 0 && task.types.every((one) => MOTOR.includes(one)));
+  const mechanism = kinds.join() === "four-bar" ? undefined : kinds;
+  const next: Task = { ...rest, mechanism };
+  if (!hasSliders(next)) return { ...next, types: task.types.length > 0 || !turns ? task.types : MOTOR };
+  if (mechanism?.join() === "slider-crank") Object.assign(next, { stroke, time_ratio });
+  return { ...next, types: [], input: turns ? "full-turn" : undefined };
+}
+
+export class Slides {
+  private full = element("input", { type: "checkbox", id: "slide-full" }) as HTMLInputElement;
+  private fields = NUMBERS.map(
+    ([id]) => element("input", { type: "number", id, min: "0", step: "any", placeholder: "any" }) as HTMLInputElement,
+  );
+  private units = NUMBERS.map(() => element("span"));
+  private lengths: HTMLElement[];
+  private turning: HTMLElement;
+  private types = byId("type").closest("label") as HTMLElement;
+
+  constructor(page: Page) {
+    this.full.addEventListener("change", () =>
+      page.replace({ ...page.task(), input: this.full.checked ? "full-turn" : undefined }),
+    );
+    this.lengths = NUMBERS.map(([, key], i) => {
+      const field = this.fields[i];
+      field.addEventListener("change", () => {
+        const { value, valueAsNumber: number } = field;
+        if (value !== "" && !Number.isFinite(number)) return;
+        page.replace({ ...page.task(), [key]: value === "" ? undefined : [number, number] });
+      });
+      const text = labelOf(`require.${key}`);
+      return element("label", {}, [
+        `${text[0].toUpperCase()}${text.slice(1)} `,
+        element("span", { class: "field" }, [field, this.units[i]]),
+      ]);
+    });
+    this.units[0].className = "unit";
+    this.turning = element("label", { class: "check" }, [this.full, ` ${labelOf("require.input")}`]);
+    this.types.after(this.turning, ...this.lengths);
+  }
+
+  /** Brings the controls to what the task says. */
+  fill(task: Task) {
+    const slides = hasSliders(task);
+    this.turning.hidden = !slides;
+    this.types.hidden = slides && !task.mechanism?.includes("four-bar");
+    this.full.checked = task.input === "full-turn";
+    const isCrank = task.mechanism?.join() === "slider-crank";
+    NUMBERS.forEach(([, key], i) => {
+      this.lengths[i].hidden = !isCrank;
+      if (document.activeElement === this.fields[i]) return;
+      const [low, high] = task[key] ?? [];
+      this.fields[i].value = low === undefined ? "" : String(low);
+      // A range of a problem file is kept until a number is typed.
+      this.fields[i].title = low === high ? "" : `from ${low} to ${high}`;
+    });
+  }
+}
