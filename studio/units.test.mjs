@@ -41,6 +41,7 @@ const { resized } = await part("boxes");
 const { nameFault } = await part("names");
 const grab = await part("grab");
 const { evenly } = await part("files");
+const { ofKinds } = await part("slides");
 
 test("a moved point takes none with it of precise ones, and none is rounded that does not move", () => {
   const far = [
@@ -502,4 +503,42 @@ test("what is asked has one name: that of its control, in the page and in what t
     ["coupler_x and a path_of_mine stay", "coupler_x and a path_of_mine stay"],
   ])
     assert.equal(labels.labelled(text), wanted);
+});
+
+test("other kinds of linkages keep what they can: a motor, and of a slider-crank its rail and its stroke", () => {
+  const path = {
+    name: "a",
+    points: [
+      [0, 0],
+      [3, 4],
+      [3, 1],
+    ],
+    closed: true,
+    types: ["crank-rocker"],
+    seed: 1,
+  };
+  const asked = { ...path, method: "continuation", objective: "max-deviation" };
+  const slider = ofKinds(asked, ["slider-crank"]);
+  assert.deepEqual([slider.types, slider.input, slider.mechanism], [[], "full-turn", ["slider-crank"]]);
+  assert.deepEqual([slider.method, slider.objective], [undefined, undefined]);
+  const held = { ...slider, stroke: [2, 3], kept: { "design.line_point": "[0, [1, 2]]", "design.a": "1" } };
+  const twice = withLengthsTimes(held, 2);
+  assert.deepEqual([twice.stroke, twice.kept["design.line_point"]], [[4, 6], "[0, [2, 4]]"]);
+  const inverted = ofKinds(held, ["inverted-slider-crank"]);
+  assert.deepEqual([inverted.stroke, inverted.kept], [undefined, { "design.a": "1" }]);
+  const fourBar = ofKinds(inverted, ["four-bar"]);
+  assert.deepEqual(
+    [fourBar.mechanism, fourBar.input, fourBar.types],
+    [undefined, undefined, ["crank-rocker", "double-crank"]],
+  );
+});
+
+test("a rail that is turned by a hair is the same one, one that leads elsewhere is not", () => {
+  const of = (line_deg, number) => ({
+    linkage: { kind: "slider-crank", A: [0, 0], a: 0.01, b: 0.03, line_point: [0, 0], line_deg, t1: 1 },
+    number,
+  });
+  const choice = { candidate: of(179.9, 1) };
+  assert.deepEqual(followed(choice, [of(20, 2), of(-179.9, 3)]), { candidate: of(-179.9, 3) });
+  assert.equal(followed(choice, [of(20, 2)]), null);
 });

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from ._result import Progress
 
     Path = Union[str, os.PathLike[str]]
-    Subject = Union["Result", "Candidate", FourBar, SliderLinkage, Path]
+    OfFourBars = Union["Result", "Candidate", FourBar, Path]
+    Subject = Union[OfFourBars, SliderLinkage]
 
 from . import _linkwright
 from ._files import write
@@ -209,7 +210,7 @@ def _numbers(given: Any) -> list[float]:
     return [float(x) for x in (plain if hasattr(plain, "__iter__") else [plain])]
 
 
-def cognates(linkage: Subject) -> list[FourBar]:
+def cognates(linkage: OfFourBars) -> list[FourBar]:
     """Returns the other two linkages of the same coupler curve (Roberts, Chebyshev); fewer if they do not exist.
 
     >>> import linkwright as lw
@@ -322,7 +323,7 @@ def build(
 
 
 def snap(
-    linkage: Subject,
+    linkage: OfFourBars,
     *,
     grid: float | None = None,
     lengths: Any = None,

@@ -272,7 +272,7 @@ def test_a_linkage_with_a_slider_moves_and_reads_back(linkage: lw.SliderLinkage,
     assert hash(read) == hash(linkage)
     assert linkage.kind in repr(linkage)
     with pytest.raises(lw.ProblemError, match="is not a four-bar"):
-        lw.cognates(linkage)
+        lw.cognates(linkage)  # type: ignore[arg-type]
     # It is measured on any target, built and exported without a run.
     own = lw.path(linkage.coupler_curve(0.0)[:-1:45].tolist(), closed=True)
     assert lw.compare(linkage, target=own).to_frame()["rms"].max() < 1e-6

@@ -7,8 +7,7 @@ use crate::files::problem_file::ProblemFile;
 use crate::judge::assess::{assess, assess_again};
 use crate::judge::figures::extent;
 use crate::judge::verify::verify_candidate;
-use crate::mechanism::LinkageError;
-use crate::mechanism::{OneLoop, Unit};
+use crate::mechanism::{LinkageError, LoopKind, OneLoop, Unit};
 use crate::record::Candidate;
 use crate::record::digest::digest;
 use crate::report::certificate::headline;
@@ -16,8 +15,7 @@ use crate::report::compare::{
     Comparison, Entry, LeftOut, SortKey, compare, in_one_unit, same_body, same_points, unit_remarks,
 };
 use crate::synthesis::nearest::nearest_positions;
-use crate::task::Problem;
-use crate::task::TaskError;
+use crate::task::{Output, Problem, TaskError};
 use std::path::Path;
 
 /// The reason why there is no comparison.
@@ -50,6 +48,12 @@ pub enum NotCompared {
 enum NotMeasured {
     #[error(transparent)]
     Linkage(#[from] LinkageError),
+    /// The outputs of the function are none that the kind has.
+    #[error("a {kind} has {what}")]
+    WithoutOutput { kind: LoopKind, what: &'static str },
+    /// Some crank angles of the target are free, others given.
+    #[error("a target with some free crank angles is compared with four-bars alone, and this is a {kind}")]
+    PartlyTimed { kind: LoopKind },
     #[error("it cannot be assembled at every {noun} of {name}")]
     NotAssembled { name: String, noun: &'static str },
 }
@@ -112,9 +116,18 @@ impl Target {
     }
 
     /// Returns the linkage in this target's unit, measured at the positions nearest to its points or at its angles.
-    fn nearest(&self, linkage: impl Into<OneLoop>, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
+    fn nearest(&self, linkage: OneLoop, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
         let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| from.factor_to(to));
-        let linkage = linkage.into().scaled(factor)?;
+        let linkage = linkage.scaled(factor)?;
+        let (task, kind) = (self.problem.task(), linkage.kind());
+        let output = self.problem.spec().task.output.as_ref().map(|output| output.output);
+        if let Some(output) = output.filter(|output| !output.is_of(kind)) {
+            let what = if output == Output::Place { "no slider" } else { "no output link that turns" };
+            return Err(NotMeasured::WithoutOutput { kind, what });
+        }
+        if task.is_partly_timed() && kind != LoopKind::FourBar {
+            return Err(NotMeasured::PartlyTimed { kind });
+        }
         nearest_positions(&self.problem, linkage)
             .and_then(|(crank_deg, assemblies)| assess(&self.problem, linkage, &crank_deg, &assemblies))
             .ok_or_else(|| NotMeasured::NotAssembled {

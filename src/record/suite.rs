@@ -60,11 +60,14 @@ pub enum Known {
         /// A length: an angle error of one radian counts like an error of the place of this length.
         angle_weight: f64,
     },
-    /// Of a function: the sum of weighted squared errors of the output, in degrees squared. A run has to reach it to count
-    /// as a hit.
+    /// Of a function: the sum of weighted squared errors of the output, in degrees squared or of a slider's place. A run has
+    /// to reach it to count as a hit.
     Function {
         /// The least objective that is known.
         best_known_objective: f64,
+        /// Whether the outputs are places of a slider.
+        #[serde(skip_serializing_if = "std::ops::Not::not")]
+        of_places: bool,
     },
 }
 
@@ -73,7 +76,7 @@ impl Known {
     pub fn best(&self) -> f64 {
         match *self {
             Known::Path { best_known_sum_sq, .. } => best_known_sum_sq,
-            Known::Motion { best_known_objective, .. } | Known::Function { best_known_objective } => {
+            Known::Motion { best_known_objective, .. } | Known::Function { best_known_objective, .. } => {
                 best_known_objective
             }
         }
@@ -83,7 +86,7 @@ impl Known {
     pub fn goal(&self) -> f64 {
         match *self {
             Known::Path { goal_sum_sq, .. } => goal_sum_sq,
-            Known::Motion { best_known_objective, .. } | Known::Function { best_known_objective } => {
+            Known::Motion { best_known_objective, .. } | Known::Function { best_known_objective, .. } => {
                 best_known_objective
             }
         }
@@ -183,7 +186,12 @@ impl ProblemResult {
         matches!(self.known, Known::Motion { .. })
     }
 
-    /// Returns whether the problem is a function: angles of the follower.
+    /// Returns whether the problem is a function whose outputs are places of a slider.
+    pub fn is_of_places(&self) -> bool {
+        matches!(self.known, Known::Function { of_places: true, .. })
+    }
+
+    /// Returns whether the problem is a function: angles of the follower, or places of a slider.
     pub fn is_function(&self) -> bool {
         matches!(self.known, Known::Function { .. })
     }

@@ -205,7 +205,7 @@ fn sections<'a>(
         nouns: "poses",
         shown: Errors { of_places: true, of_angles: true },
     };
-    let (places, functions) = functions.into_iter().partition(|problem| is_of_places(problem));
+    let (places, functions) = functions.into_iter().partition(|problem| problem.is_of_places());
     let functions = Section {
         problems: functions,
         heading: FUNCTIONS,
@@ -221,12 +221,6 @@ fn sections<'a>(
         shown: Errors { of_places: true, of_angles: false },
     };
     [motions, functions, places].into_iter().filter(|section| !section.problems.is_empty())
-}
-
-/// Returns whether the outputs of a function are places.
-fn is_of_places(problem: &ProblemResult) -> bool {
-    let best = problem.search.summary.best.as_ref();
-    best.and_then(|best| best.motion).is_some_and(|errors| errors.rms_deg.is_none())
 }
 
 /// Returns whether certificates were asked for.

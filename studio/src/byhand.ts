@@ -177,6 +177,8 @@ export class ByHand {
   private fit() {
     const { linkage } = this;
     if (!linkage) return;
+    if (this.host.task().mechanism?.includes("four-bar") === false)
+      return this.host.say("Four-bars are not asked for: choose them under Kind of linkage first.");
     if (this.locks.size === 0) return this.host.say("Lock what is to stay: the rest is fitted again around it.");
     const kept = keptBy(linkage, this.locks);
     this.host.note();

@@ -11,11 +11,14 @@ const ANOTHER = 0.3;
 /** How unlike two linkages are, in parts of their size. */
 function unlike({ linkage: p }: Shown, { linkage: q }: Shown): number {
   if (p.kind !== q.kind || p.t1 !== q.t1 || p.t2 !== q.t2) return Infinity;
-  const numbers = ({ kind: _k, t1: _1, t2: _2, ...rest }: Linkage) => Object.values(rest).flat() as number[];
+  const numbers = ({ kind: _k, t1: _1, t2: _2, line_deg: _d, ...rest }: Linkage) =>
+    Object.values(rest).flat() as number[];
   const [ps, qs] = [numbers(p), numbers(q)];
   const [[x, y], [x2, y2] = [x, y]] = pivotsOf(p);
   const size = Math.max(Math.hypot(x2 - x, y2 - y), ...[p.a, p.b ?? 0, p.c ?? 0].map(Math.abs));
-  return Math.max(...ps.map((value, i) => Math.abs(value - qs[i]))) / (size || 1);
+  const apart = Math.max(...ps.map((value, i) => Math.abs(value - qs[i]))) / (size || 1);
+  // The direction of a rail, as the part of its length by which it leads elsewhere.
+  return Math.max(apart, 2 * Math.abs(Math.sin((((p.line_deg ?? 0) - (q.line_deg ?? 0)) * Math.PI) / 360)));
 }
 
 /** Whether two are one linkage, which the hand has moved. */

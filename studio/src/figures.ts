@@ -199,7 +199,7 @@ export class Figure {
       const { kernel } = moving.cycle as never as { kernel: { s: Point } };
       setAll(this.guide, { d: pathThrough(along.map(toward)) });
       const direction = moving.guide.moves ? (joints.u as Point) : kernel.s;
-      setAll(this.block, { d: outlineAt(moving.guide.moves ? b : d, direction, this.scale) });
+      setAll(this.block, { d: outlineAt(d, direction, this.scale) });
     }
     [a, b, c, d].forEach(([x, y], i) => {
       setAll(this.pins[i], { cx: px(x), cy: px(y) });

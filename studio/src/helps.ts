@@ -8,7 +8,8 @@ import { EXACT, type Instead, withoutControls } from "./task";
 
 /** What is counted in degrees, and what in nothing; the rest are lengths. */
 const UNITS: Record<string, string> = { transmission_deg_min: "°" };
-for (const key of ["type", "link_ratio_max", "order", "direction", "circuit", "branch", "closing"]) UNITS[key] = "";
+for (const key of ["type", "link_ratio_max", "time_ratio", "order", "direction", "circuit", "branch", "closing"])
+  UNITS[key] = "";
 
 /** The requirements that the page has no control for: only what is kept of a file can state them. */
 const UNSHOWN = ["require.extent_max", "require.longest_max"];
@@ -30,6 +31,7 @@ const words = (value: Value): string => {
 
 /** A change in plain words: `least transmission angle 18° instead of 45°`. */
 function inWords(key: string, from: Value, to: Value, unit: string | undefined): string {
+  if (key === "require.input") return "a crank that may rock";
   const after = UNITS[key.replace("require.", "")] ?? unitAfter(unit);
   return `${labelOf(key)} ${words(to)}${after} instead of ${words(from)}${after}`;
 }

@@ -1,5 +1,5 @@
-// What motions, functions, sliders, details and building add to the page: a second script, loaded when it is first needed. Both scripts have
-// their own copies of what holds nothing; what holds something is handed over here.
+// What motions, functions, sliders, details and building add to the page: a second script, loaded when it is first needed.
+// Both scripts have their own copies of what holds nothing; what holds something is handed over here.
 
 import type { AnglesPlayer } from "./angles";
 import type { Board } from "./board";

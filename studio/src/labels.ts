@@ -3,7 +3,7 @@
 /** By the keys of problem files: the label of the control, and the head of the row in the report's table. */
 const LABELS: Record<string, [label: string, row?: string]> = {
   type: ["driven by", "type"],
-  input: ["the crank turns fully"],
+  input: ["the crank turns fully", "input"],
   stroke: ["stroke of the slider"],
   time_ratio: ["time ratio of the slider's ways"],
   longest_max: ["longest link", "longest link, P included"],

@@ -61,9 +61,9 @@ export class Machine {
     pivots.map(toward).forEach(([x, y], i) => {
       setAll(this.stands[i], { transform: `translate(${px(x)} ${px(y)})` });
     });
-    const second = pivots.length < 2;
-    this.stands[1].classList.toggle("absent", second);
-    this.letters[1].classList.toggle("absent", second);
+    const isAlone = pivots.length < 2;
+    this.stands[1].classList.toggle("absent", isAlone);
+    this.letters[1].classList.toggle("absent", isAlone);
     const { drive } = moving.shown;
     const { cyclic, sense } = moving.cycle;
     const isFull = cyclic && drive.kind === "turn";

@@ -513,7 +513,7 @@ class Page {
         "The figures published for this problem hold for it as it was opened: they go. Undo brings them back.",
       );
     this.size.show(task);
-    if (!more.kit && (task.body || task.function || task.mechanism))
+    if (!more.kit && (task.body || task.function || task.mechanism || task.input))
       void this.kit(() => {
         this.board.redraw();
         this.settle();

@@ -15,7 +15,7 @@ import { taskOf } from "./task";
 
 /** The controls that a path alone has, and those that a function has not. */
 const OF_PATHS = ["walker", "exact"];
-const OF_PLACES = ["closed", "tolerance", "each-tolerance", "timing", "unit"];
+const OF_PLACES = ["kind", "closed", "tolerance", "each-tolerance", "timing", "unit"];
 
 class Second implements Kit {
   panel = BuildPanel;

@@ -15,18 +15,24 @@ const NUMBERS = [
 /** Whether linkages with a slider are searched for. */
 export const hasSliders = ({ mechanism }: Task) => (mechanism ?? []).some((kind) => kind !== "four-bar");
 
+/** The keys of a problem file that hold a rail. */
+const OF_RAILS = ["design.line_deg", "design.line_point"];
+
 /** What a motor on the crank asks of four-bars. */
 const MOTOR: Task["types"] = ["crank-rocker", "double-crank"];
 
 /** The same task for other kinds of linkages: a crank that is to turn fully stays so, and what other kinds have not goes. */
 export function ofKinds(task: Task, kinds: LoopKind[]): Task {
-  const { stroke, time_ratio, input: _, ...rest } = task;
+  const { stroke, time_ratio, input: _, kept, ...rest } = task;
   const turns = task.input === "full-turn" || (task.types.length > 0 && task.types.every((one) => MOTOR.includes(one)));
   const mechanism = kinds.join() === "four-bar" ? undefined : kinds;
-  const next: Task = { ...rest, mechanism };
+  const hasRail = kinds.includes("slider-crank");
+  const stays = Object.entries(kept ?? {}).filter(([key]) => hasRail || !OF_RAILS.includes(key));
+  const next: Task = { ...rest, mechanism, kept: stays.length > 0 ? Object.fromEntries(stays) : undefined };
   if (!hasSliders(next)) return { ...next, types: task.types.length > 0 || !turns ? task.types : MOTOR };
   if (mechanism?.join() === "slider-crank") Object.assign(next, { stroke, time_ratio });
-  return { ...next, types: [], input: turns ? "full-turn" : undefined };
+  // They are fitted by least squares alone.
+  return { ...next, types: [], input: turns ? "full-turn" : undefined, method: undefined, objective: undefined };
 }
 
 export class Slides {
@@ -38,6 +44,7 @@ export class Slides {
   private lengths: HTMLElement[];
   private turning: HTMLElement;
   private types = byId("type").closest("label") as HTMLElement;
+  private objective = byId("objective").closest("label") as HTMLElement;
 
   constructor(page: Page) {
     this.full.addEventListener("change", () =>
@@ -64,8 +71,10 @@ export class Slides {
   /** Brings the controls to what the task says. */
   fill(task: Task) {
     const slides = hasSliders(task);
-    this.turning.hidden = !slides;
+    // Of four-bars a problem file may ask for it.
+    this.turning.hidden = !slides && task.input !== "full-turn";
     this.types.hidden = slides && !task.mechanism?.includes("four-bar");
+    this.objective.hidden = slides;
     this.full.checked = task.input === "full-turn";
     const isCrank = task.mechanism?.join() === "slider-crank";
     NUMBERS.forEach(([, key], i) => {

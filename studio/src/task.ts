@@ -9,7 +9,8 @@ export const NINE = 9;
 export const EXACT = "continuation";
 
 export const isExact = (task: Task) => task.method === EXACT;
-export const canBeExact = (task: Task) => task.points.length === NINE && !task.timing && !task.body && !task.function;
+export const canBeExact = (task: Task) =>
+  task.points.length === NINE && ![task.timing, task.body, task.function, task.mechanism].some(Boolean);
 
 /** Crank angles spread evenly over a turn, or over half a turn of an open path. */
 function evenAngles(n: number, closed: boolean): number[] {
@@ -52,7 +53,7 @@ const USUAL_LONGEST = 3;
 const EXTENT = "require.extent_max";
 /** Keys of a problem file that bound a length, and those that bound a place. */
 const BOUND_LENGTHS = ["a", "b", "c", "d", "e", "ground", "coupler_x", "coupler_y"].map((key) => `design.${key}`);
-const BOUND_PLACES = ["design.A", "design.B"];
+const BOUND_PLACES = ["design.A", "design.B", "design.line_point"];
 
 /** The length that no link may exceed: what is asked, or what a problem file has by itself; null: any. */
 export function longestMax(task: Task): number | null {

@@ -340,10 +340,10 @@ pub struct Analyze {
 pub struct Cognates {
     /// A linkage file (TOML), a result's folder or record.json (its first candidate), either with `:2` for another
     pub linkage: PathBuf,
-    /// The folder for the linkage files NAME-cognate-1.toml and NAME-cognate-2.toml [default: here]
+    /// The folder for the linkage files NAME-cognate-1.toml and NAME-cognate-2.toml, of a slider-crank NAME-cognate.toml [default: here]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Draw all three together
+    /// Draw all three together: four-bars
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
     /// Replace a file that is there even where linkwright did not write it, or where this command reads it

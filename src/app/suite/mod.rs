@@ -116,7 +116,7 @@ fn known(file: &ProblemFile) -> Result<Known, &'static str> {
     };
     match expect.and_then(|expect| expect.objective) {
         Some(best_known_objective) if file.spec.task.is_function() => {
-            Ok(Known::Function { best_known_objective })
+            Ok(Known::Function { best_known_objective, of_places: file.spec.task.is_of_places() })
         }
         Some(best_known_objective) => {
             Ok(Known::Motion { best_known_objective, angle_weight: body.angle_weight })

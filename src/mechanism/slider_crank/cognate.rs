@@ -15,8 +15,8 @@
 //! | line | s' = zeta s through Q' = A + (\|Z\|/b) zeta (Q - A) |
 //! | coupler point | Z' = a conj(zeta) |
 //!
-//! Its crank turns in step with the original's coupler, and its coupler with the original's crank: of two slider-cranks whose
-//! offsets are within their lengths one turns fully and the other rocks, b'/a' = a/b. An inverted slider-crank has no such
+//! Its crank turns in step with the original's coupler, and its coupler with the original's crank; b'/a' = a/b. With h the
+//! distance of A from the line, one of the two cranks turns fully and the other rocks if h <= |b - a|; else both rock. An inverted slider-crank has no such
 //! cognate: read in the other order its closure has a term in the crank's direction alone, which the closure of a block has not.
 
 use super::SliderCrank;

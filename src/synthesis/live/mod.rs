@@ -8,7 +8,7 @@
 
 pub mod nine;
 
-use crate::judge::assess::{assess, assess_again};
+use crate::judge::assess::assess;
 use crate::judge::loosen::judged_under;
 use crate::judge::rank::{compare, distinct, distinct_places};
 use crate::judge::warm::start_at;
@@ -69,7 +69,8 @@ impl Session {
     /// Fits the candidates again, each from its present parameters, to a problem whose target or limits have moved.
     ///
     /// A candidate with another number of positions than there are points is placed anew on its own curve. One that
-    /// cannot follow (its loop opens at a point), or is of a kind that is not searched for, is left out. The candidates are ranked anew, better first.
+    /// cannot follow (its loop opens at a point), or is of a kind that is not searched for, is left out. The candidates are
+    /// ranked anew, better first.
     pub fn follow(&mut self, problem: &Problem, budget: &Budget<'_>) -> &[Candidate] {
         let kept = self.take_all();
         let follow = |(number, candidate): &(u64, Candidate)| {
@@ -135,7 +136,7 @@ fn followed(problem: &Problem, candidate: &Candidate, budget: &Budget<'_>) -> Op
         (fitted, judged(problem, &start_at(problem, &placed)?))
     } else {
         let (fitted, _) = sliders::refit(context, &placed, (EFFORT, EVALUATIONS, 0.0));
-        (fitted, assess_again(problem, &placed))
+        (fitted, sliders::unfitted(context, &placed))
     };
     // A fit that was cut short may have given up an acceptable linkage for a nearer one that is not.
     [fitted, unfitted].into_iter().flatten().min_by(|one, other| compare(problem, one, other))
@@ -156,6 +157,8 @@ mod tests {
     use crate::app::job::run::{Context, Job, run};
     use crate::files::problem_file::parse;
     use crate::mechanism::LoopKind;
+    use crate::task::AngleOffset;
+    use crate::task::spec::TimingSpec;
     use std::sync::atomic::AtomicBool;
 
     /// Returns an egg of `n` points whose point `moved` lies `by` off.
@@ -228,6 +231,20 @@ mod tests {
             let afresh = searched(&moved)[0].error.sum_sq;
             let followed = session.candidates()[0].error.sum_sq;
             assert!(followed <= 1.5 * afresh, "{kind}: {followed} beside {afresh}");
+            // Under a timing it stands at the crank angles that are prescribed.
+            let mut timed = of_kind(&egg(24, 4, 0.25), &[kind]).spec().clone();
+            let crank_deg: Vec<f64> = (0..24).map(|i| 15.0 * f64::from(i)).collect();
+            timed.task.timing = Some(TimingSpec { crank_deg, offset: AngleOffset::Fixed, free: Vec::new() });
+            let timed = Problem::new(timed).expect("a task");
+            let mut beside = session.clone();
+            for candidate in beside.follow(&timed, &budget) {
+                let steps = candidate.crank_deg.windows(2).map(|two| (two[1] - two[0]).abs());
+                assert!(
+                    steps.clone().all(|step| (step - 15.0).abs() < 1e-9),
+                    "{kind}: {:?}",
+                    candidate.crank_deg
+                );
+            }
             // A point more is met where the linkage comes nearest to it.
             assert!(!session.follow(&of_kind(&egg(25, 4, 0.25), &[kind]), &budget).is_empty());
             assert!(session.follow(&egg(24, 4, 0.25), &budget).is_empty());

@@ -35,6 +35,13 @@ pub(in crate::synthesis) fn refit(
     (end.and_then(|(_, end)| fits.judged(&end)), fits.used)
 }
 
+/// Judges a candidate with a slider where it stands, at the crank angles that the context's problem prescribes.
+pub(in crate::synthesis) fn unfitted(context: Context<'_>, candidate: &Candidate) -> Option<Candidate> {
+    let target = Target::of(context.problem);
+    let start = start_at(context.problem, &target, candidate)?;
+    Fits::new(context, &target, 0.0, 0).judged(&start)
+}
+
 /// Returns the start at which a candidate stands; `None` of a four-bar, or if its loop is open at a point.
 pub(super) fn start_at(problem: &Problem, target: &Target, candidate: &Candidate) -> Option<Start> {
     let linkage = &candidate.linkage;

@@ -2,7 +2,9 @@
 //!
 //! *Free timing.* The curve of a drawn shape, as points evenly along it, is laid on the target by the similarity of least
 //! squares, at every shift of a closed target and at a few stretches of an open one; the points' positions follow from
-//! their arc length ([`crate::synthesis::atlas`]).
+//! their arc length ([`crate::synthesis::atlas`]). Shapes are compared by what is left when A, K and Z are fitted at these
+//! positions, as the place of P on the coupler is what a fit mends first; slider-cranks for an open target by the residual of the
+//! similarity.
 //!
 //! *Prescribed timing.* At the drawn shape's positions A, K and Z of P = A + K e + Z u follow from linear least squares.
 
@@ -214,8 +216,8 @@ const STRETCHES: usize = 6;
 /// Least and greatest length of a stretch, in parts of the curve's.
 const SPANS: (f64, f64) = (0.08, 0.97);
 
-/// Draws a start of free timing with its misfit, the residual of the similarity relative to the target's spread; `None`
-/// for a shape that cannot be laid on the target.
+/// Draws a start of free timing with its misfit, a residual relative to the target's spread; `None` for a shape that cannot be
+/// laid on the target.
 pub(super) fn free(
     problem: &Problem,
     target: &Target,
@@ -273,6 +275,9 @@ pub(super) fn free(
     let positions = positions?;
     let (scale, shift) = similarity(target, &drawn.shape, &positions)?;
     let turn = scale / scale.norm();
+    // A coupler that swings little mimics every arc, with lengths out of all proportion.
+    let tells = target.is_closed || kind != LoopKind::SliderCrank;
+    let misfit = if tells { linear(target, &positions)?.misfit } else { laid.misfit };
     let start = Start {
         kind,
         x: drawn.shape.carried(scale, shift).unknowns(0.0, 0.0),
@@ -281,7 +286,7 @@ pub(super) fn free(
         direction: laid.direction,
         turns: drawn.arc.is_none(),
     };
-    Some((laid.misfit, start))
+    Some((misfit, start))
 }
 
 /// Returns the similarity p -> shift + scale p that brings the coupler points at positions to the target.

@@ -45,10 +45,10 @@ pub fn finish<const N: usize, const R: usize, P: BlockLeastSquares<N, R>>(
         for _ in 0..HALVINGS {
             let shared = dx.map(|d| part * d);
             part *= 0.5;
-            result.evaluations += 1;
             if result.evaluations >= options.max_evaluations {
                 break;
             }
+            result.evaluations += 1;
             let x = moved(&result.x, &shared, problem.bounds());
             work.own_steps_after(&shared, 0.0);
             if !problem.retract(&result.x, &result.state, &work.tau, &x, &mut state) {
