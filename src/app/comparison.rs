@@ -15,7 +15,7 @@ use crate::report::compare::{
     Comparison, Entry, LeftOut, SortKey, compare, in_one_unit, same_body, same_points, unit_remarks,
 };
 use crate::synthesis::nearest::nearest_positions;
-use crate::task::{Output, Problem, TaskError};
+use crate::task::{Problem, TaskError};
 use std::path::Path;
 
 /// The reason why there is no comparison.
@@ -122,8 +122,7 @@ impl Target {
         let (task, kind) = (self.problem.task(), linkage.kind());
         let output = self.problem.spec().task.output.as_ref().map(|output| output.output);
         if let Some(output) = output.filter(|output| !output.is_of(kind)) {
-            let what = if output == Output::Place { "no slider" } else { "no output link that turns" };
-            return Err(NotMeasured::WithoutOutput { kind, what });
+            return Err(NotMeasured::WithoutOutput { kind, what: output.missing() });
         }
         if task.is_partly_timed() && kind != LoopKind::FourBar {
             return Err(NotMeasured::PartlyTimed { kind });

@@ -58,6 +58,14 @@ impl Output {
             Output::Place => kind != LoopKind::FourBar,
         }
     }
+
+    /// Returns the words for what a linkage without such an output does not have.
+    pub fn missing(self) -> &'static str {
+        match self {
+            Output::Angle => "no output link that turns",
+            Output::Place => "no slider",
+        }
+    }
 }
 
 /// The link whose angles are wanted.

@@ -80,11 +80,11 @@ pub(super) fn of_kinds(
     if let Some(output) = task.output.as_ref().map(|output| output.output)
         && let Some(kind) = kinds.iter().find(|kind| !output.is_of(**kind))
     {
-        let (what, help) = match output {
-            Output::Angle => ("no output link that turns", "write output = [..], the places of its slider"),
-            Output::Place => ("no slider", "write output_deg = [..], the angles of its follower"),
+        let help = match output {
+            Output::Angle => "write output = [..], the places of its slider",
+            Output::Place => "write output_deg = [..], the angles of its follower",
         };
-        return toml.refuse("design.mechanism", format!("a {kind} has {what}"), help);
+        return toml.refuse("design.mechanism", format!("a {kind} has {}", output.missing()), help);
     }
     let Some(slider) = kinds.iter().find(|kind| **kind != LoopKind::FourBar) else { return Ok(()) };
     let Some(reason) = WithoutSliders::of(task, solve) else { return Ok(()) };

@@ -1,21 +1,22 @@
 //! A suite for the terminal and as Markdown: the same tables in two formats.
 //!
-//! Paths, whose answers are compared by a sum of squares, motions, whose objective counts angles too, and functions, whose
-//! errors are angles alone, have tables of their own.
+//! Paths, whose answers are compared by a sum of squares, have the tables of this file; motions, whose objective counts
+//! angles too, and functions, whose errors are of one output alone, have those of [`sections`].
+
+mod sections;
 
 use super::grid::Align::{Left, Right};
 use super::grid::{Cell, Colour, Column, Grid, Ink, plain};
 use super::text::{
     COLUMNS, NO_NUMBER, brief, clean, clean_sentence, grouped, markdown, percent_up, significant, wrapped,
 };
-use crate::record::suite::{MethodResult, MotionErrors, ProblemResult, PublishedResult, Suite};
+use crate::record::suite::{MethodResult, ProblemResult, PublishedResult, Suite};
+use sections::sections;
 
 /// The mark of a problem with a sum that is smaller than the best known.
 const SMALLER: &str = " *";
 /// The number of digits of figures that are stated one by one.
 const DIGITS: usize = 10;
-/// The number of digits of a motion's objectives in a table.
-const DIGITS_OF_OBJECTIVES: usize = 8;
 /// The width of a problem's name on a terminal, in columns.
 const NAME: usize = 30;
 
@@ -27,29 +28,9 @@ const TIMES: &str = "ms: the median and the worst time of a search, of one threa
     to ranked, refereed candidates; times depend on the machine, the other figures do not.";
 const PROVED: &str = "proved gap: no linkage of the kind that is told below has a sum of squares more than this below the \
     least one found.";
-const MOTIONS: &str = "Motions: poses of a body";
-const WHAT_OF_MOTIONS: &str = "objective: the least one of all seeds, the sum over the poses of weight times (squared \
-    distance of the place + (angle_weight times the error of the angle in radians) squared); median: of the accepted \
-    answers of all seeds; hits: seeds whose answer is accepted and reaches the best known objective within 1e-6 of it \
-    (where that is 0: up to rounding); rms, rms deg: the root of the mean squared distance of the places and error of \
-    the angle, in degrees, of the best answer; poses: how many, with those that are a place alone; evaluations: of the \
-    objective, median.";
-const FUNCTIONS: &str = "Functions: an angle turned into another";
-const WHAT_OF_FUNCTIONS: &str = "objective: the least one of all seeds, the sum over the pairs of weight times squared error \
-    of the follower's angle, in degrees squared; median: of the accepted answers of all seeds; hits: seeds whose answer is \
-    accepted and reaches the best known objective within 1e-6 of it; rms deg: the root of the mean squared error of the \
-    best answer, degrees; evaluations: of the objective, median.";
-const PLACES: &str = "Functions: an angle turned into a slider's place";
-const WHAT_OF_PLACES: &str = "objective: the least one of all seeds, the sum over the pairs of weight times squared error \
-    of the place; median: of the accepted answers of all seeds; hits: seeds whose answer is accepted and reaches the best \
-    known objective within 1e-6 of it (where that is 0: up to rounding); rms: the root of the mean squared error of the best \
-    answer; evaluations: of the objective, median.";
 const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as printed (where that could be \
     read in the source) and by our referee; genetic, diff. evolution: their median sum over accepted answers, \
     after as many evaluations as the search above used in the median, and how many seeds had one.";
-
-const BESIDE_OBJECTIVES: &str = "genetic, diff. evolution: the median objective of their accepted answers, after as many \
-    evaluations as the search above used in the median, and how many seeds had one.";
 
 /// Returns a suite as text: the answers, the comparisons, and the notes.
 pub fn suite_text(suite: &Suite, colour: Colour) -> String {
@@ -75,7 +56,7 @@ pub fn suite_text(suite: &Suite, colour: Colour) -> String {
             out.push('\n');
         }
         out.push_str(&said(section.meaning));
-        out.extend(section.has_populations().then(|| said(BESIDE_OBJECTIVES)));
+        out.extend(section.beside().map(said));
         out.extend(is_first.then(|| said(TIMES)));
         out.extend(without_populations(&section.problems).iter().map(|why| said(why)));
     }
@@ -122,7 +103,7 @@ pub fn suite_markdown(suite: &Suite) -> String {
             out.push('\n');
         }
         out.push_str(&paragraph(section.meaning));
-        out.extend(section.has_populations().then(|| paragraph(BESIDE_OBJECTIVES)));
+        out.extend(section.beside().map(paragraph));
         out.extend(without_populations(&section.problems).iter().map(|why| paragraph(why)));
     }
     out.push_str(&paragraph(TIMES));
@@ -158,69 +139,6 @@ fn by_kind(suite: &Suite) -> (Vec<&ProblemResult>, Vec<&ProblemResult>, Vec<&Pro
     let (functions, others): (Vec<_>, Vec<_>) = suite.problems.iter().partition(|p| p.is_function());
     let (motions, paths) = others.into_iter().partition(|p| p.is_motion());
     (paths, motions, functions)
-}
-
-/// The motions or the functions of a suite, with the words about them.
-struct Section<'a> {
-    problems: Vec<&'a ProblemResult>,
-    heading: &'static str,
-    /// The meaning of the columns.
-    meaning: &'static str,
-    /// The word for their targets.
-    nouns: &'static str,
-    /// The errors that they have.
-    shown: Errors,
-}
-
-/// The columns of errors in a table of answers.
-#[derive(Clone, Copy)]
-struct Errors {
-    of_places: bool,
-    of_angles: bool,
-}
-
-impl Section<'_> {
-    /// Returns the table of the answers, that of the population searches beside them if there are any, and that of the effort.
-    fn tables(&self) -> Vec<Grid> {
-        let mut tables = vec![answers_of_motions(&self.problems, self.shown)];
-        tables.extend(self.has_populations().then(|| beside_objectives(&self.problems)));
-        tables.push(effort(&self.problems, self.nouns));
-        tables
-    }
-
-    fn has_populations(&self) -> bool {
-        self.problems.iter().any(|problem| !problem.populations.is_empty())
-    }
-}
-
-/// Returns the sections of a suite that are not empty.
-fn sections<'a>(
-    motions: Vec<&'a ProblemResult>,
-    functions: Vec<&'a ProblemResult>,
-) -> impl Iterator<Item = Section<'a>> {
-    let motions = Section {
-        problems: motions,
-        heading: MOTIONS,
-        meaning: WHAT_OF_MOTIONS,
-        nouns: "poses",
-        shown: Errors { of_places: true, of_angles: true },
-    };
-    let (places, functions) = functions.into_iter().partition(|problem| problem.is_of_places());
-    let functions = Section {
-        problems: functions,
-        heading: FUNCTIONS,
-        meaning: WHAT_OF_FUNCTIONS,
-        nouns: "pairs",
-        shown: Errors { of_places: false, of_angles: true },
-    };
-    let places = Section {
-        problems: places,
-        heading: PLACES,
-        meaning: WHAT_OF_PLACES,
-        nouns: "pairs",
-        shown: Errors { of_places: true, of_angles: false },
-    };
-    [motions, functions, places].into_iter().filter(|section| !section.problems.is_empty())
 }
 
 /// Returns whether certificates were asked for.
@@ -315,42 +233,6 @@ fn answers(problems: &[&ProblemResult]) -> Grid {
     Grid::of(problems, if is_certified(problems) { &columns } else { &columns[..9] })
 }
 
-/// Returns the table of the answers of motions or of functions, with the errors that they have.
-fn answers_of_motions(problems: &[&ProblemResult], shown: Errors) -> Grid {
-    const OF_PLACES: usize = 5;
-    const OF_ANGLES: usize = 6;
-    let best = |p: &ProblemResult, of: fn(&MotionErrors) -> f64| {
-        p.search.summary.best.as_ref().and_then(|best| best.motion.as_ref()).map(of)
-    };
-    // Beside an exact answer there is rounding alone.
-    let digits = |p: &ProblemResult| if p.known.best() > 0.0 { DIGITS_OF_OBJECTIVES } else { 3 };
-    let objective = |p: &ProblemResult, value: Option<f64>| number(value, digits(p));
-    let columns: [Column<'_, &ProblemResult>; 7] = [
-        (Left, "problem", &|p| marked(p)),
-        (Right, "objective", &|p| objective(p, best(p, |errors| errors.objective))),
-        (Right, "best known", &|p| objective(p, Some(p.known.best()))),
-        (Right, "median", &|p| objective(p, p.search.summary.median_objective)),
-        (Right, "hits", &|p| hits(p)),
-        (Right, "rms", &|p| number(best(p, |errors| errors.rms), 4)),
-        (Right, "rms deg", &|p| number(best(p, |errors| errors.rms_deg.unwrap_or(f64::NAN)), 4)),
-    ];
-    let is_shown = |i: usize| (i != OF_PLACES || shown.of_places) && (i != OF_ANGLES || shown.of_angles);
-    let shown = columns.iter().enumerate().filter(|(i, _)| is_shown(*i));
-    Grid::of(problems, &shown.map(|(_, column)| *column).collect::<Vec<_>>())
-}
-
-/// Returns the table of the times and evaluations of the searches for motions or functions; `targets` heads their number.
-fn effort(problems: &[&ProblemResult], targets: &'static str) -> Grid {
-    let columns: [Column<'_, &ProblemResult>; 5] = [
-        (Left, "problem", &|p| plain(clean(&p.name))),
-        (Right, targets, &|p| plain(p.points.to_string())),
-        (Right, "median ms", &|p| milliseconds(p.search.summary.median_search_s)),
-        (Right, "worst ms", &|p| milliseconds(p.search.summary.worst_search_s)),
-        (Right, "evaluations", &|p| evaluations(p)),
-    ];
-    Grid::of(problems, &columns)
-}
-
 fn beside(problems: &[&ProblemResult]) -> Grid {
     let heads = ["median", "printed", "re-evaluated", "genetic", "accepted", "diff. evolution", "accepted"];
     let mut grid = Grid::new(&[(Left, &["problem"]), (Right, &heads)]);
@@ -364,24 +246,6 @@ fn beside(problems: &[&ProblemResult]) -> Grid {
         ];
         for population in &problem.populations {
             cells.push(number(population.summary.median_sum_sq, 6));
-            cells.push(plain(format!("{}/{}", population.summary.accepted, population.runs.len())));
-        }
-        grid.row(cells);
-    }
-    grid
-}
-
-/// Returns the table of the population searches beside those of motions or functions.
-fn beside_objectives(problems: &[&ProblemResult]) -> Grid {
-    let heads = ["median", "genetic", "accepted", "diff. evolution", "accepted"];
-    let mut grid = Grid::new(&[(Left, &["problem"]), (Right, &heads)]);
-    for problem in problems.iter().filter(|problem| !problem.populations.is_empty()) {
-        let mut cells = vec![
-            plain(clean(&problem.name)),
-            number(problem.search.summary.median_objective, DIGITS_OF_OBJECTIVES),
-        ];
-        for population in &problem.populations {
-            cells.push(number(population.summary.median_objective, 6));
             cells.push(plain(format!("{}/{}", population.summary.accepted, population.runs.len())));
         }
         grid.row(cells);
