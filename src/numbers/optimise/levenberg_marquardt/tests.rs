@@ -3,7 +3,7 @@
 use super::block::{across_and_along, dot};
 use super::system::{Workspace, assemble, bounded_step};
 use super::*;
-use crate::test_poses::{Poses, TRUTH, truth_at};
+use crate::test_poses::{Limit, Poses, TRUTH, truth_at};
 use linkwright_arithmetic::streams::{Stream, stream, uniform};
 use nalgebra::{DMatrix, DVector};
 use std::array::from_fn;
@@ -296,4 +296,73 @@ fn derivatives_of_three_rows_agree_with_differences_and_a_wrong_row_does_not() {
     problem.sabotage = 1.01;
     let error = derivative_error(&problem, &x, &state, &steps, 1e-6).expect("all exist");
     assert!(error > 1e-3, "{error}");
+}
+
+/// Returns the end of a few steps of a fit without noise, near its exact answer.
+fn near_exact(problem: &Poses) -> LmResult<4, Vec<f64>> {
+    let few = LmOptions { exact_cost: 1e-8, ..options() };
+    let (x, state) = problem.start();
+    let end = solve(problem, x, state, &few, &|| false);
+    assert!(end.cost > 1e-20 && end.cost < 1e-3, "{}", end.cost);
+    end
+}
+
+/// The options of a finish: nothing but the last digits is left.
+fn last_digits() -> LmOptions {
+    LmOptions { exact_cost: 1e-29, ..options() }
+}
+
+#[test]
+fn a_nearly_exact_fit_is_led_to_its_last_digits() {
+    let mut problem = Poses::drawn(9, 0.0);
+    problem.bounds = [(-3.0, 3.0); 4];
+    let mut end = near_exact(&problem);
+    let before = end.evaluations;
+    finish(&problem, &mut end, &last_digits(), &|| false);
+    assert_eq!(end.outcome, LmOutcome::Exact, "{end:?}");
+    assert!(end.x.iter().zip(TRUTH).all(|(one, other)| (one - other).abs() < 1e-13), "{:?}", end.x);
+    assert!(end.evaluations - before < 20, "{}", end.evaluations - before);
+    // Nothing is left to spend, or the caller stops it: it stays where it is.
+    let mut end = near_exact(&problem);
+    let (x, spent) = (end.x, LmOptions { max_evaluations: end.evaluations, ..last_digits() });
+    finish(&problem, &mut end, &spent, &|| false);
+    finish(&problem, &mut end, &last_digits(), &|| true);
+    assert_eq!((end.x, end.evaluations), (x, spent.max_evaluations));
+}
+
+#[test]
+fn a_finish_stays_within_bounds_constraints_and_order() {
+    // The exact answer lies beyond a bound.
+    let mut problem = Poses::drawn(9, 0.0);
+    problem.bounds[2] = (1.1 + 1e-4, 3.0);
+    let mut end = near_exact(&problem);
+    finish(&problem, &mut end, &last_digits(), &|| false);
+    assert!(end.x[2] >= problem.bounds[2].0 && end.cost > 1e-12, "{:?} {}", end.x, end.cost);
+    assert_ne!(end.outcome, LmOutcome::Exact);
+    // It lies beyond a constraint: x_2 >= 1.1001.
+    let mut problem = Poses::drawn(9, 0.0);
+    problem.limits = vec![Limit { constant: -1.1001, gradient: [0.0, 0.0, 1.0, 0.0], own: None }];
+    let start = [0.3, -0.2, 1.1002, 0.4];
+    let state = problem.start().1;
+    let cost = problem.cost(&start, &state).expect("it exists");
+    let mut end =
+        LmResult { x: start, state, cost, violation: 0.0, evaluations: 1, outcome: LmOutcome::Converged };
+    finish(&problem, &mut end, &last_digits(), &|| false);
+    assert!(
+        end.violation <= options().feasibility && end.x[2] >= 1.1001 - options().feasibility,
+        "{:?}",
+        end.x
+    );
+    assert!(end.cost <= cost);
+    // The exact answer has two points in another order than the one that is kept.
+    let mut problem = Poses::drawn(7, 0.0);
+    problem.targets.swap(2, 3);
+    problem.ordered = true;
+    let (x, mut state) = (TRUTH, problem.start().1);
+    let middle = 0.5 * (state[2] + state[3]);
+    (state[2], state[3]) = (middle - 1e-4, middle + 1e-4);
+    let cost = problem.cost(&x, &state).expect("it exists");
+    let mut end = LmResult { x, state, cost, violation: 0.0, evaluations: 1, outcome: LmOutcome::Converged };
+    finish(&problem, &mut end, &last_digits(), &|| false);
+    assert!(end.state.is_sorted() && end.cost <= cost && end.cost > 1e-6, "{:?}", end.state);
 }
