@@ -63,21 +63,6 @@ pub fn given(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<Given>
     inputs::read(&path).map_err(refused)
 }
 
-/// As [`given`], with a linkage that is a four-bar.
-fn given_four_bar(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<Given<linkwright::FourBar>> {
-    match given(subject, which)? {
-        Given::Run(run) => Ok(Given::Run(run)),
-        Given::Linkage(file) => {
-            let LinkageFile { name, unit, linkage } = *file;
-            let Some(four_bar) = linkage.four_bar() else {
-                let kind = linkage.kind();
-                return Err(refused(format!("a {kind} is not a four-bar, and a four-bar is needed here")));
-            };
-            Ok(Given::Linkage(Box::new(LinkageFile { name, unit, linkage: *four_bar })))
-        }
-    }
-}
-
 /// Returns the linkage, of any kind, that an argument names.
 fn any_linkage(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<AnyLinkageFile> {
     if let Ok(chain) = subject.cast::<Chain>() {
@@ -329,8 +314,8 @@ pub fn snap<'py>(
                 return Err(refused(format!("{key} = {value}: a number above 0 is needed")));
             }
         }
-        let subject = Snapping::of(given_four_bar(subject, which)?).map_err(refused)?;
-        let fixed = fixed(&subject.candidate.linkage, &keep, &set);
+        let subject = Snapping::of(given(subject, which)?).map_err(refused)?;
+        let fixed = fixed(&subject.candidate.linkage, &keep, &set).map_err(refused)?;
         let wanted = subject.problem.spec().solve.candidates;
         let request = SnapRequest { stock, lengths, fixed, wanted };
         let Ended { value, interrupt } = run(py, pools::threads(threads)?, None, move |talk| {

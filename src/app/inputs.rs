@@ -6,7 +6,7 @@ use crate::app::job::folder::{FolderError, RECORD, read_record};
 use crate::files::diagnostic::Diagnostic;
 use crate::files::linkage_file;
 use crate::files::linkage_file::{AnyLinkageFile, LinkageFile};
-use crate::mechanism::{FourBar, OneLoop};
+use crate::mechanism::OneLoop;
 use crate::record::{Candidate, Pick, Record};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -136,17 +136,6 @@ pub enum NotRead {
 pub fn read(argument: &Path) -> Result<Given, NotRead> {
     if is_linkage_file(argument) {
         return Ok(Given::Linkage(Box::new(linkage_file::load_one_loop(argument)?)));
-    }
-    Ok(Given::Run(Box::new(read_run(argument)?)))
-}
-
-/// As [`read`], with a linkage file of a four-bar alone.
-///
-/// # Errors
-/// [`NotRead`].
-pub fn read_four_bar(argument: &Path) -> Result<Given<FourBar>, NotRead> {
-    if is_linkage_file(argument) {
-        return Ok(Given::Linkage(Box::new(linkage_file::load(argument)?)));
     }
     Ok(Given::Run(Box::new(read_run(argument)?)))
 }

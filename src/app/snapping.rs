@@ -4,7 +4,7 @@
 use crate::app::inputs::{Given, NoCandidate};
 use crate::files::diagnostic::{Diagnostic, escaped};
 use crate::files::input_text;
-use crate::mechanism::{FourBar, OneLoop, Unit, xy};
+use crate::mechanism::{LoopKind, OneLoop, Unit, xy};
 use crate::record::{Candidate, ProblemRecord};
 use crate::report::text::clean;
 use crate::synthesis::snap::{Fixed, Length, Stock, own_curve};
@@ -43,9 +43,6 @@ pub enum NoSubject {
     /// The problem of the record is invalid.
     #[error(transparent)]
     Problem(#[from] TaskError),
-    /// The candidate is of a kind whose lengths are not snapped.
-    #[error("{0} is no four-bar, and lengths of four-bars alone are brought to stock sizes")]
-    OfAnotherKind(String),
     /// The candidate lacks a position.
     #[error("{0} has no position for each of the target's points")]
     Positions(String),
@@ -57,7 +54,7 @@ impl Subject {
     ///
     /// # Errors
     /// [`NoSubject`].
-    pub fn of(given: Given<FourBar>) -> Result<Self, NoSubject> {
+    pub fn of(given: Given) -> Result<Self, NoSubject> {
         match given {
             Given::Linkage(file) => {
                 let found = own_curve(&file.linkage);
@@ -68,9 +65,6 @@ impl Subject {
             Given::Run(run) => {
                 let chosen = run.one()?;
                 let (label, candidate) = (escaped(&chosen.label), chosen.candidate.clone());
-                if candidate.linkage.four_bar().is_none() {
-                    return Err(NoSubject::OfAnotherKind(label));
-                }
                 let ProblemRecord { name, source, unit, resolved, .. } = run.record.problem;
                 let problem = Problem::new(resolved)?;
                 let points = problem.task().len();
@@ -83,26 +77,59 @@ impl Subject {
     }
 }
 
+/// A dimension that a linkage of this kind does not have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{key}: a {kind} has no such dimension; it has {}", has.join(", "))]
+pub struct NoDimension {
+    key: String,
+    kind: LoopKind,
+    has: Vec<&'static str>,
+}
+
 /// Returns the dimensions that are fixed: those of the linkage that are kept (`ground, a, b, c, d, e, A, B` or
 /// `ground_angle_deg`), and those that are put at a value of their own.
-pub fn fixed(linkage: &OneLoop, keep: &[String], set: &[(String, f64)]) -> Fixed {
+///
+/// # Errors
+/// [`NoDimension`].
+pub fn fixed(linkage: &OneLoop, keep: &[String], set: &[(String, f64)]) -> Result<Fixed, NoDimension> {
     let mut fixed = Fixed::default();
-    let angle = linkage.ground_angle().to_degrees();
+    let second = linkage.second_pivot();
+    let missing = |key: &str| NoDimension {
+        key: key.to_owned(),
+        kind: linkage.kind(),
+        has: Length::ALL
+            .into_iter()
+            .filter(|length| length.of(*linkage).is_some())
+            .map(Length::key)
+            .collect(),
+    };
     for key in keep {
         match (Length::named(key), key.as_str()) {
-            (Some(length), _) => fixed = fixed.with(length, length.of(linkage)),
+            (Some(length), _) => {
+                let value = length.of(*linkage).ok_or_else(|| missing(key))?;
+                fixed = fixed.with(length, value);
+            }
             (None, "A") => fixed.crank_pivot = Some(xy(linkage.crank_pivot())),
-            (None, "B") => fixed.follower_pivot = linkage.second_pivot().map(xy),
-            (None, _) => fixed.ground_angle_deg = Some(angle),
+            (None, "B") => fixed.follower_pivot = Some(xy(second.ok_or_else(|| missing(key))?)),
+            (None, _) => {
+                second.ok_or_else(|| missing(key))?;
+                fixed.ground_angle_deg = Some(linkage.ground_angle().to_degrees());
+            }
         }
     }
     for (key, value) in set {
         match Length::named(key) {
-            Some(length) => fixed = fixed.with(length, *value),
-            None => fixed.ground_angle_deg = Some(*value),
+            Some(length) => {
+                length.of(*linkage).ok_or_else(|| missing(key))?;
+                fixed = fixed.with(length, *value);
+            }
+            None => {
+                second.ok_or_else(|| missing(key))?;
+                fixed.ground_angle_deg = Some(*value);
+            }
         }
     }
-    fixed
+    Ok(fixed)
 }
 
 /// Reads a stock from a text file: its lengths, one a line or separated by commas.

@@ -261,7 +261,7 @@ fn design_rows(problem: &Problem, linkage: &OneLoop) -> Vec<Requirement> {
         ("design.b", linkage.coupler()),
         ("design.c", four_bar.map(FourBar::follower)),
         ("design.d", Some(linkage.crank_side())),
-        ("design.e", four_bar.map(FourBar::follower_side)),
+        ("design.e", linkage.second_side()),
         ("design.ground", linkage.ground()),
         ("design.ground_angle_deg", second.map(|_| linkage.ground_angle().to_degrees())),
         ("design.line_deg", rail.map(|rail| rail.parameters().line_deg)),

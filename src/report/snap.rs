@@ -1,6 +1,6 @@
 //! The cost of snapping as text: before and after, and the next best linkages.
 
-use super::csv::PARAMETERS;
+use super::csv::{OF_SLIDERS, PARAMETERS, Parameter};
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain, verdict};
 use super::text::{COLUMNS, brief, exact, grouped, indented, significant, wrapped};
@@ -8,6 +8,9 @@ use super::words::length_suffix;
 use crate::mechanism::Unit;
 use crate::record::Candidate;
 use crate::synthesis::snap::{Length, Request, Snapped};
+
+/// The line of a slider-crank, and the offset of an inverted one.
+const PLACES_OF_SLIDERS: [Parameter; 4] = [OF_SLIDERS[0], OF_SLIDERS[1], OF_SLIDERS[2], OF_SLIDERS[3]];
 
 /// The number of significant digits of lengths and errors.
 const DIGITS: usize = 6;
@@ -87,7 +90,9 @@ fn dimensions(
         ]);
     };
     let (from, to) = (&before.linkage, &after.linkage);
-    for length in Length::ALL {
+    for (length, value, was) in
+        Length::ALL.into_iter().filter_map(|length| Some((length, length.of(*to)?, length.of(*from)?)))
+    {
         let stock = snapped.lengths.contains(&length);
         let note = match request.fixed.get(length) {
             _ if stock => "stock",
@@ -95,15 +100,18 @@ fn dimensions(
             None => "",
         };
         // The ground follows from the pivots, up to rounding.
-        let value = if stock { rounded(length.of(to)) } else { length.of(to) };
-        row(length.key(), length.of(from), value, stock, note);
+        let value = if stock { rounded(value) } else { value };
+        row(length.key(), was, value, stock, note);
     }
-    for (name, of) in &PARAMETERS[..4] {
-        let [from, to] = [from, to].map(|linkage| of(linkage).unwrap_or(f64::NAN));
-        row(name, from, to, false, "");
+    for (name, of) in PARAMETERS[..4].iter().chain(&PLACES_OF_SLIDERS) {
+        if let (Some(from), Some(to)) = (of(from), of(to)) {
+            row(name, from, to, false, "");
+        }
     }
-    let [was, is] = [from, to].map(|linkage| linkage.ground_angle().to_degrees());
-    row("ground angle", was, is, false, "");
+    if from.second_pivot().is_some() {
+        let [was, is] = [from, to].map(|linkage| linkage.ground_angle().to_degrees());
+        row("ground angle", was, is, false, "");
+    }
     grid.render(colour)
 }
 
@@ -140,7 +148,7 @@ fn figures(before: &Candidate, snapped: &Snapped, colour: Colour) -> String {
             verdict(if c.accepted { "yes" } else { "no" }, c.accepted),
         ]);
         for length in &snapped.lengths {
-            let value = length.of(c.linkage);
+            let value = length.of(c.linkage).unwrap_or(f64::NAN);
             cells.push(plain(if stock { exact(rounded(value)) } else { significant(value, DIGITS) }));
         }
         grid.row(cells);

@@ -71,6 +71,14 @@ pub mod sliders {
     pub const NEARLY: f64 = 1e-10;
     /// The part of their size by which the unknowns of starts that are fitted to convergence differ.
     pub const APART: f64 = 0.1;
+    /// The mean square of the errors, in sizes of the target, at which a short fit is led to its end before others begin.
+    pub const PROMISING: f64 = 1e-8;
+    /// After the first batch one round in so many begins near known answers: the best of them, how many changes are drawn, and
+    /// the least and largest relative change of an unknown.
+    pub const HOP_EVERY: u64 = 4;
+    pub const HOP_FROM: usize = 12;
+    pub const HOPS: usize = 60;
+    pub const HOP: (f64, f64) = (0.03, 0.8);
     /// Of a motion: sets of four poses whose slider is taken in a round, and lines that are drawn.
     pub const FOURS: usize = 6;
     pub const ACROSS: usize = 6;
@@ -82,10 +90,11 @@ pub mod sliders {
     /// Candidates fitted on to the last digit at the end, at least, and the effort of each.
     pub const LEAST_POLISHED: usize = 8;
     pub const POLISH: Effort = Effort::of(5000, 40);
-    /// When the best answer is believed.
+    /// When the best answer is believed. Arcs of sliders resemble each other: with eight hits 4 in 100 open curves end at a
+    /// false optimum, with sixteen 1 (`cargo bench --bench sliders -- open`).
     pub const STOPPING: Stopping = Stopping {
-        hits: 8,
-        near_hits: 16,
+        hits: 16,
+        near_hits: 32,
         quiet_rounds: 60,
         quiet_times: 4,
         least_batches: 6,

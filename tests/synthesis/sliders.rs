@@ -336,3 +336,43 @@ fn every_problem_of_known_linkages_is_met_exactly() {
     }
     assert_eq!(count, 10);
 }
+
+#[test]
+fn an_extent_and_a_footprint_are_held_within_the_search() {
+    for kind in ["slider-crank", "inverted-slider-crank"] {
+        let more = |require: &str| {
+            format!(
+                "[design]\nmechanism = \"{kind}\"\n[require]\n{require}\n[solve]\ncandidates = 1\nadvice = false\n\
+                 evaluations = 30000\n"
+            )
+        };
+        // An egg that neither kind draws exactly.
+        let egg: Vec<String> = turn(24)
+            .into_iter()
+            .map(|t| format!("[{:?}, {:?}]", 1.5 * t.cos(), t.sin() + 0.25 * (2.0 * t).cos()))
+            .collect();
+        let text = |require: &str| {
+            format!(
+                "format = 1\n[task.path]\nclosed = true\npoints = [{}]\n{}",
+                egg.join(", "),
+                more(require)
+            )
+        };
+        let extent = |record: &Record| {
+            let problem = Problem::new(record.problem.resolved.clone()).expect("a problem");
+            linkwright::internals::judge::figures::extent(&problem, &record.candidates[0])
+        };
+        let free = solved(parse(&text("input = \"full-turn\"")).spec);
+        let wide = extent(&free);
+        let most = 0.8 * wide;
+        let held = solved(parse(&text(&format!("input = \"full-turn\"\nextent_max = {most:?}"))).spec);
+        let best = &held.candidates[0];
+        assert!(best.accepted, "{kind}: {:?}", best.requirements);
+        assert!(extent(&held) <= most * (1.0 + 1e-9), "{kind}: {} {most}", extent(&held));
+        assert!(best.error.rms >= free.candidates[0].error.rms * (1.0 - 1e-6));
+        let boxed = "input = \"full-turn\"\nfootprint_in = [-3.0, -4.0, 5.0, 4.5]";
+        let boxed = solved(parse(&text(boxed)).spec);
+        assert!(boxed.candidates[0].accepted, "{kind}: {:?}", boxed.candidates[0].requirements);
+        assert_eq!(verify(&boxed).expect("a problem"), []);
+    }
+}

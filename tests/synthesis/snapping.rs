@@ -3,7 +3,9 @@
 use crate::common::{bytes, literature, run_on};
 use linkwright::internals::judge::rank::compare;
 use linkwright::internals::judge::verify::verify;
-use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar};
+use linkwright::internals::mechanism::{
+    AssemblyMode, Complex, FourBar, InvertedSliderCrank, OneLoop, SliderCrank,
+};
 use linkwright::internals::record::{Candidate, Reason, Record, Termination};
 use linkwright::internals::synthesis::snap::{
     Fixed, Length, Request, SnapError, Snapped, Stock, own_curve, record, refit, snap,
@@ -55,7 +57,7 @@ fn snapped_lengths_are_stock_to_the_digit_and_the_record_is_true() {
         assert!(before.accepted && found.candidates[0].accepted);
         for candidate in &found.candidates {
             for length in &found.lengths {
-                let value = length.of(candidate.linkage);
+                let value = length.of(candidate.linkage).expect("a four-bar has it");
                 let count = (value / step).round();
                 assert!((value - step * count).abs() <= 8.0 * f64::EPSILON * value, "{length:?} {value}");
                 assert!(count >= 1.0);
@@ -83,7 +85,7 @@ fn no_combination_of_three_lengths_around_it_is_better_than_what_is_found() {
             let (problem, before, found) = snapped(from, &request);
             let best = &found.candidates[0];
             let near = |length: Length| -> Vec<f64> {
-                let middle = (length.of(before.linkage) / step).round();
+                let middle = (length.of(before.linkage).expect("a four-bar has it") / step).round();
                 (-3..=3).map(|k| (middle + f64::from(k)) * step).filter(|v| *v > 0.5 * step).collect()
             };
             let mut tried = 0;
@@ -137,13 +139,15 @@ fn crank_rocker() -> FourBar {
 #[test]
 fn a_linkage_whose_lengths_are_stock_already_keeps_them_and_its_curve() {
     let linkage = crank_rocker();
-    let (problem, candidate) = own_curve(&linkage).expect("it closes");
+    let (problem, candidate) = own_curve(&linkage.into()).expect("it closes");
     assert!(candidate.accepted && candidate.error.rms < 1e-12);
     let keys = [Length::Ground, Length::A, Length::B, Length::C];
     let found =
         snap(Context::new(&problem, &budget()), &candidate, &request(10.0, &keys)).expect("an answer");
     for length in keys {
-        assert!((length.of(found.candidates[0].linkage) - length.of(linkage)).abs() < 1e-12);
+        let [is, was] =
+            [found.candidates[0].linkage, linkage.into()].map(|linkage: OneLoop| length.of(linkage));
+        assert!((is.expect("it has it") - was.expect("it has it")).abs() < 1e-12);
     }
     assert!(found.candidates[0].error.rms < 1e-9 * problem.task().size());
 }
@@ -151,7 +155,7 @@ fn a_linkage_whose_lengths_are_stock_already_keeps_them_and_its_curve() {
 #[test]
 fn what_is_kept_or_set_stays_and_what_cannot_be_snapped_is_told() {
     let linkage = crank_rocker();
-    let (problem, candidate) = own_curve(&linkage).expect("it closes");
+    let (problem, candidate) = own_curve(&linkage.into()).expect("it closes");
     let mut wish = request(7.0, &Length::ALL);
     wish.fixed = Fixed::default().with(Length::A, 20.0).with(Length::C, 51.5);
     wish.fixed.crank_pivot = Some([3.0, -2.0]);
@@ -186,4 +190,77 @@ fn what_is_kept_or_set_stays_and_what_cannot_be_snapped_is_told() {
     let limited = Problem::new(limited).expect("a problem");
     let refused = snap(Context::new(&limited, &budget()), &candidate, &request(7.0, &[Length::A]));
     assert!(matches!(refused, Err(SnapError::NoStock { key: "a", .. })), "{refused:?}");
+}
+
+/// A slider-crank and an inverted one of odd lengths, in millimetres.
+fn sliders() -> [OneLoop; 2] {
+    let line = (Complex::new(110.3, 16.2), 0.3);
+    let (offset, t1) = (Complex::new(61.7, 33.1), AssemblyMode::Plus);
+    let slider = SliderCrank::from_parts(Complex::new(10.0, 20.0), [31.3, 97.4], line, offset, t1);
+    let pivots = [Complex::new(0.0, 0.0), Complex::new(83.7, 11.2)];
+    let inverted = InvertedSliderCrank::from_parts(pivots, 30.6, 9.1, offset, t1);
+    [
+        OneLoop::SliderCrank(slider.expect("a linkage")),
+        OneLoop::InvertedSliderCrank(inverted.expect("a linkage")),
+    ]
+}
+
+#[test]
+fn lengths_of_linkages_with_a_slider_are_snapped_too() {
+    let step = 5.0;
+    for linkage in sliders() {
+        let (problem, before) = own_curve(&linkage).expect("it closes");
+        assert!(before.accepted && before.error.rms < 1e-10);
+        let request = request(step, &Length::ALL);
+        let found = snap(Context::new(&problem, &budget()), &before, &request).expect("an answer");
+        let mut snapped = found.lengths.clone();
+        snapped.sort();
+        let has: Vec<Length> =
+            Length::ALL.into_iter().filter(|length| length.of(linkage).is_some()).collect();
+        assert_eq!(snapped, has);
+        assert_eq!(has.len(), if linkage.slider_crank().is_some() { 4 } else { 3 });
+        for candidate in &found.candidates {
+            assert_eq!(candidate.linkage.kind(), linkage.kind());
+            for length in &found.lengths {
+                let value = length.of(candidate.linkage).expect("it has it");
+                let count = (value / step).round();
+                assert!((value - step * count).abs() <= 1e-12 * value, "{length:?} {value}");
+            }
+        }
+        // Rounded lengths cost little where the rest is fitted again.
+        let best = &found.candidates[0];
+        assert!(best.accepted && best.error.rms < 0.01 * problem.task().size(), "{}", best.error.rms);
+        let nearest = found.nearest.as_ref().expect("it closes");
+        assert!(compare(&problem, best, nearest).is_le());
+        let told = record(&problem, "snapped", None, None, &request, &found).expect("a record");
+        assert_eq!(verify(&told).expect("a problem"), []);
+    }
+}
+
+#[test]
+fn kept_and_set_dimensions_of_a_slider_stay() {
+    let [slider, inverted] = sliders();
+    let (problem, before) = own_curve(&slider).expect("it closes");
+    let mut wish = request(7.0, &[Length::B]);
+    wish.fixed = Fixed::default().with(Length::A, 31.3).with(Length::E, 50.0);
+    wish.fixed.crank_pivot = Some([10.0, 20.0]);
+    let found = snap(Context::new(&problem, &budget()), &before, &wish).expect("an answer");
+    let best = found.candidates[0].linkage;
+    assert_eq!(best.crank(), 31.3);
+    assert!((best.second_side().expect("e") - 50.0).abs() < 1e-12);
+    assert!((best.crank_pivot() - Complex::new(10.0, 20.0)).norm() < 1e-9);
+
+    let (problem, before) = own_curve(&inverted).expect("it closes");
+    let mut wish = request(7.0, &[Length::Ground]);
+    wish.fixed.follower_pivot = Some([83.7, 11.2]);
+    wish.fixed.ground_angle_deg = Some(inverted.ground_angle().to_degrees());
+    let found = snap(Context::new(&problem, &budget()), &before, &wish).expect("an answer");
+    let best = found.candidates[0].linkage;
+    let ground = best.ground().expect("a ground link");
+    assert!((ground - 84.0).abs() < 1e-12, "{ground}");
+    assert!((best.second_pivot().expect("B") - Complex::new(83.7, 11.2)).norm() < 1e-9);
+    assert!((best.ground_angle() - inverted.ground_angle()).abs() < 1e-9);
+    // It has neither a coupler of a length nor a follower.
+    let refused = snap(Context::new(&problem, &budget()), &before, &request(7.0, &[Length::B, Length::C]));
+    assert_eq!(refused, Err(SnapError::NothingToSnap));
 }

@@ -7,7 +7,6 @@ use crate::app::inputs;
 pub use crate::app::inputs::{Given, NoCandidate, NotRead, Run, Which, file_of};
 use crate::files::linkage_file::AnyLinkageFile;
 use crate::judge::verify::{Mismatch, verify};
-use crate::mechanism::FourBar;
 use crate::record::Record;
 use std::path::Path;
 
@@ -34,14 +33,6 @@ impl From<NotRead> for Ended {
 /// [`Ended::Refused`]; the fault has been reported.
 pub fn read(argument: &Path) -> Result<Given, Ended> {
     Ok(inputs::read(argument)?)
-}
-
-/// As [`read`], with a linkage file of a four-bar alone.
-///
-/// # Errors
-/// [`Ended::Refused`]; the fault has been reported.
-pub fn read_four_bar(argument: &Path) -> Result<Given<FourBar>, Ended> {
-    Ok(inputs::read_four_bar(argument)?)
 }
 
 /// As [`read`], for a command that needs the record of a run: a linkage file is refused.

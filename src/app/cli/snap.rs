@@ -11,8 +11,7 @@ use crate::app::snapping::{NoSubject, Subject, fixed, pitches};
 use crate::files::generator::FileKind;
 use crate::files::linkage_file;
 use crate::files::name;
-use crate::judge::practicality::{Build, Practicality};
-use crate::mechanism::FourBar;
+use crate::judge::practicality::{Build, Practicality, Sweep};
 use crate::record::{Reason, Record};
 use crate::report::practicality::practicality_text;
 use crate::report::snap::snap_text;
@@ -28,7 +27,7 @@ const SUFFIX: &str = "-snapped";
 pub fn run(options: &Options) -> Result<Ended, Ended> {
     let begun = Instant::now();
     let stock = stock(options)?;
-    let subject = Subject::of(result::read_four_bar(&options.result)?).map_err(|why| match why {
+    let subject = Subject::of(result::read(&options.result)?).map_err(|why| match why {
         NoSubject::NoCandidate(none) => Ended::from(none),
         why => refuse(why),
     })?;
@@ -39,7 +38,7 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     let request = Request {
         stock,
         lengths: options.snap.clone(),
-        fixed: fixed(&subject.candidate.linkage, &options.keep, &options.set),
+        fixed: fixed(&subject.candidate.linkage, &options.keep, &options.set).map_err(refuse)?,
         wanted: subject.problem.spec().solve.candidates,
     };
     let cancel = interrupt::watch("saving the best so far");
@@ -62,12 +61,12 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     let written = write(options, &record, begun, search_s)?;
     terminal::answer(&format!("{}\n", subject.label));
     terminal::answer(&snap_text(&subject.candidate, &request, &snapped, subject.unit, terminal::colour()));
-    let of_practice = |linkage: &FourBar| {
-        let hole = Build::usual_hole(linkage, subject.unit);
+    let of_practice = || {
+        let hole = Build::usual_hole_of(&Sweep::of_candidate(&subject.problem, best)?, subject.unit)?;
         let found = Practicality::of_candidate(&subject.problem, best, Build::new(hole, hole))?;
-        Some((found, build::usual_tolerance(linkage, subject.unit)))
+        Some((found, build::usual_tolerance(best.linkage, subject.unit)))
     };
-    if let Some((found, tolerance)) = best.linkage.four_bar().and_then(of_practice) {
+    if let Some((found, tolerance)) = of_practice() {
         terminal::answer("\n");
         terminal::answer(&practicality_text(&found, subject.unit, tolerance, terminal::colour()));
     }

@@ -265,6 +265,15 @@ impl OneLoop {
         }
     }
 
+    /// Returns e = |DP|; `None` of an inverted slider-crank, whose D moves along the coupler.
+    pub fn second_side(&self) -> Option<f64> {
+        match self {
+            OneLoop::FourBar(linkage) => Some(linkage.follower_side()),
+            OneLoop::SliderCrank(linkage) => Some((linkage.coupler_offset() - linkage.coupler()).norm()),
+            OneLoop::InvertedSliderCrank(_) => None,
+        }
+    }
+
     /// Returns |CP|, the distance from the crank pin to the coupler point.
     pub fn crank_side(&self) -> f64 {
         match self {

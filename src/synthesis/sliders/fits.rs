@@ -1,20 +1,20 @@
 //! Fits of a round: its starts drawn and compared, led to their ends by Levenberg-Marquardt, and these judged.
 
-use super::starts::{Start, Target, free, prescribed};
+use super::starts::{Start, Target, free, log_uniform, prescribed};
 use crate::judge::assess::assess_on_curve;
 use crate::judge::unwrapped::unwrapped;
 use crate::judge::warm::direction_and_offset;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{AssemblyMode, Complex, LoopKind};
-use crate::numbers::arithmetic::streams::{Stream, uniform};
+use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, finish, solve};
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord};
 use crate::synthesis::Context;
 use crate::synthesis::constants::Effort;
-use crate::synthesis::constants::sliders::{DRAWS, NEARLY, TURNING};
-use crate::task::forms::slider::fit::{Angles, SliderFit};
+use crate::synthesis::constants::sliders::{DRAWS, HOP, HOPS, NEARLY, PROMISING, TURNING};
+use crate::task::forms::slider::fit::{Angles, SliderFit, settle};
 use crate::task::forms::slider::limits::Limited;
-use crate::task::forms::slider::shape::{Closure, FRAME, OFFSET, SliderShape};
+use crate::task::forms::slider::shape::{Closure, FRAME, OFFSET, SHAPE, SliderShape};
 use crate::task::ranges::Reference;
 use crate::task::{AngleOffset, Output, Problem, Timing};
 use std::f64::consts::PI;
@@ -211,6 +211,47 @@ impl<'a> Fits<'a> {
             });
         }
         drawn
+    }
+
+    /// Returns whether a merit is nearly that of an exact answer.
+    pub(super) fn is_nearly_exact(&self, merit: f64) -> bool {
+        let weight: f64 = self.target.weights.iter().sum();
+        let radian = self.target.outputs.as_ref().map_or(1.0, |outputs| outputs.weight);
+        merit <= PROMISING * weight * radian * radian
+    }
+
+    /// Draws starts of a path near known answers, with their costs: some unknowns of one are changed, and its positions
+    /// brought to the changed curve.
+    pub(super) fn hopped(
+        &mut self,
+        limits: &Limited,
+        known: &[Start],
+        draws: &mut Stream,
+    ) -> Vec<(f64, Start)> {
+        let mut hopped = Vec::with_capacity(HOPS);
+        for _ in 0..HOPS {
+            if self.is_at_its_end() {
+                break;
+            }
+            self.used += 1;
+            let mut start = known[below(draws, known.len())].clone();
+            let by = log_uniform(draws, HOP.0, HOP.1);
+            let part = if below(draws, 2) == 0 { 1.0 } else { 1.0 / 3.0 };
+            for unknown in start.x.iter_mut().take(SHAPE) {
+                let change = uniform(draws, -by, by) * unknown.abs().max(HOP.0);
+                if uniform(draws, 0.0, 1.0) < part {
+                    *unknown += change;
+                }
+            }
+            let Some(shape) = SliderShape::of(start.kind, &start.x) else { continue };
+            if !settle(&shape, &mut start.positions) {
+                continue;
+            }
+            let start = aligned(limits, false, start);
+            let cost = self.fit::<2>(limits, &start).cost(&start.x, &start.positions);
+            hopped.extend(cost.map(|cost| (cost, start)));
+        }
+        hopped
     }
 
     /// Returns the starts of a function with their costs.

@@ -19,7 +19,8 @@ mod starts;
 
 use super::Context;
 use super::constants::sliders::{
-    APART, BATCH, FAMILY_BATCHES, KEPT, LEAST_POLISHED, LONG, LONG_FIT, POLISH, SHORT, SHORT_FIT, STOPPING,
+    APART, BATCH, FAMILY_BATCHES, HOP_EVERY, HOP_FROM, KEPT, LEAST_POLISHED, LONG, LONG_FIT, POLISH, SHORT,
+    SHORT_FIT, STOPPING,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, drive, in_parallel};
 use super::family::{climb, freedom_within, one_is_enough};
@@ -163,24 +164,32 @@ impl<'a> Sliders<'a> {
         let mut draws = stream(problem.spec().solve.seed, STREAMS + index);
         let (kind, limits) = &self.kinds[index as usize % self.kinds.len()];
         let first = (index as usize) < self.kinds.len();
+        let known: Vec<Start> = if hops(index) { self.known(problem, *kind).collect() } else { Vec::new() };
         let mut drawn: Vec<(f64, Start)> = match (&self.guided, &target.outputs) {
             (_, Some(outputs)) => {
                 let starts = output_starts(problem, (target, outputs), (*kind, limits), first, &mut draws);
                 fits.glanced_outputs(limits, starts)
             }
             (Some(guided), None) => fits.glanced(limits, guided.starts(target, *kind, first, &mut draws)),
-            (None, None) => fits.drawn((*kind, limits), &mut draws),
+            (None, None) if known.is_empty() => fits.drawn((*kind, limits), &mut draws),
+            (None, None) => fits.hopped(limits, &known, &mut draws),
         };
         outcome.draws = fits.used;
         by_merit(&mut drawn, SHORT);
         let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
+        let mut nearly: Option<Start> = None;
         for (_, start) in drawn {
-            fitted.extend(fits.run(limits, start, SHORT_FIT));
+            let Some((merit, end)) = fits.run(limits, start, SHORT_FIT) else { continue };
+            if fits.is_nearly_exact(merit) {
+                nearly = Some(end);
+                break;
+            }
+            fitted.push((merit, end));
         }
         by_merit(&mut fitted, SHORT);
         let fitted = distinct(fitted, LONG);
         let judging = context.judging();
-        for (_, start) in fitted {
+        for start in nearly.into_iter().chain(fitted.into_iter().map(|(_, start)| start)) {
             let Some((_, end)) = fits.run(limits, start, LONG_FIT) else { continue };
             if !judging.may_go_on() {
                 break;
@@ -195,6 +204,12 @@ impl<'a> Sliders<'a> {
         }
         outcome.evaluations = context.cost(fits.used);
         outcome
+    }
+
+    /// Returns the best known candidates of a kind, as starts.
+    fn known<'s>(&'s self, problem: &'s Problem, kind: LoopKind) -> impl Iterator<Item = Start> + 's {
+        let of_kind = self.at.found.iter().filter(move |candidate| candidate.linkage.kind() == kind);
+        of_kind.take(HOP_FROM).filter_map(|candidate| start_at(problem, &self.target, candidate))
     }
 
     fn is_exact(&self, problem: &Problem, candidate: &Candidate) -> bool {
@@ -239,6 +254,11 @@ impl<'a> Sliders<'a> {
     }
 }
 
+/// Returns whether a round begins near known answers.
+fn hops(index: u64) -> bool {
+    index >= BATCH && index % HOP_EVERY == HOP_EVERY - 1
+}
+
 /// Returns the first `most` starts, in the order of their merits, that lie apart from those before them: two that run into one
 /// another would come to the same end.
 fn distinct(starts: Vec<(f64, Start)>, most: usize) -> Vec<(f64, Start)> {
@@ -280,15 +300,18 @@ impl Strategy for Sliders<'_> {
     }
 
     fn read(&mut self, context: Context<'_>, batch: Self::Batch) {
+        let begin = self.at.batch * BATCH;
         self.at.batch += 1;
-        for outcome in batch {
+        for (index, outcome) in (begin..).zip(batch) {
+            // That an answer is found again from itself says nothing of others.
+            let is_independent = !hops(index);
             self.at.draws += outcome.draws;
             self.at.evaluations += outcome.evaluations;
             for candidate in outcome.found {
-                self.at.take(context.problem, &candidate, true);
+                self.at.take(context.problem, &candidate, is_independent);
                 self.at.found.push(candidate);
             }
-            self.at.independent += 1;
+            self.at.independent += u64::from(is_independent);
             self.at.belief.end_batch();
             let is_exact = |best: &Candidate| self.is_exact(context.problem, best);
             if self.is_one_enough(context.problem) && self.at.best.as_ref().is_some_and(is_exact) {

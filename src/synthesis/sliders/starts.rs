@@ -119,7 +119,7 @@ impl Target {
     }
 }
 
-fn log_uniform(stream: &mut Stream, low: f64, high: f64) -> f64 {
+pub(super) fn log_uniform(stream: &mut Stream, low: f64, high: f64) -> f64 {
     uniform(stream, low.ln(), high.ln()).exp()
 }
 

@@ -6,7 +6,7 @@ use crate::judge::costs::marginal;
 use crate::judge::family::family;
 use crate::judge::practicality::Sweep;
 use crate::judge::practicality::sensitivity::along;
-use crate::mechanism::{FourBar, Unit, xy};
+use crate::mechanism::{LoopKind, OneLoop, Unit, xy};
 use crate::record::digest::NotWritten;
 use crate::record::{Candidate, ProblemRecord, Record};
 use crate::synthesis::answers::annotate;
@@ -45,26 +45,28 @@ pub fn record(
 
 /// Returns the problem that a linkage solves by itself: points of its own coupler curve over its whole range of motion,
 /// with free timing and without limits; and the linkage as its candidate. `None` if it cannot be assembled.
-pub fn own_curve(linkage: &FourBar) -> Option<(Problem, Candidate)> {
-    let sweep = Sweep::of_linkage(linkage)?;
+pub fn own_curve(linkage: &OneLoop) -> Option<(Problem, Candidate)> {
+    let sweep = Sweep::of_linkage(*linkage)?;
     let at = along(&sweep, OWN_POINTS);
     let points = at
         .iter()
-        .map(|at| Some(xy(linkage.position_with(at.crank_angle, at.assembly).joints()?.coupler_point)))
+        .map(|at| Some(xy(linkage.joints_with(at.crank_angle, at.assembly)?.joints.coupler_point)))
         .collect::<Option<Vec<_>>>()?;
     let require = RequireSpec {
         link_ratio_max: RequireSpec::default().link_ratio_max.max(2.0 * linkage.link_ratio()),
         ..RequireSpec::default()
     };
+    let kind = linkage.kind();
+    let mechanism = if kind == LoopKind::FourBar { Vec::new() } else { vec![kind] };
     let spec = ProblemSpec {
         task: TaskSpec::path(points, sweep.full_turn),
-        design: DesignSpec::default(),
+        design: DesignSpec { mechanism, ..DesignSpec::default() },
         require,
         solve: SolveSpec::default(),
     };
     let problem = Problem::new(spec).ok()?;
     let crank_deg: Vec<f64> = at.iter().map(|at| at.crank_angle.to_degrees()).collect();
     let assemblies: Vec<_> = at.iter().map(|at| at.assembly).collect();
-    let candidate = assess(&problem, linkage, &crank_deg, &assemblies)?;
+    let candidate = assess(&problem, *linkage, &crank_deg, &assemblies)?;
     Some((problem, candidate))
 }

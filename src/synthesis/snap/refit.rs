@@ -1,13 +1,17 @@
 //! Refit of a candidate with some of its dimensions fixed.
 
-use crate::judge::assess::assess;
+use crate::judge::assess::{assess, assess_again};
 use crate::judge::rank::compare;
 use crate::judge::warm::start_at;
-use crate::mechanism::{FourBar, NaturalCoordinates, OneLoop, point, xy};
+use crate::mechanism::{
+    Complex, FourBar, InvertedSliderCrank, LoopKind, NaturalCoordinates, OneLoop, SliderCrank, point, xy,
+};
 use crate::record::Candidate;
 use crate::synthesis::Context;
+use crate::synthesis::constants::sliders::LONG_FIT;
 use crate::synthesis::multistart::judged;
 use crate::synthesis::polish::finish;
+use crate::synthesis::sliders;
 use crate::task::Problem;
 use crate::task::spec::{DesignSpec, Limits};
 
@@ -38,12 +42,12 @@ impl Length {
     /// Returns its key in files, its value in a linkage and its place in the design table.
     fn entry(self) -> Entry {
         match self {
-            Length::Ground => ("ground", FourBar::ground, |design| &mut design.ground),
-            Length::A => ("a", FourBar::crank, |design| &mut design.a),
-            Length::B => ("b", FourBar::coupler, |design| &mut design.b),
-            Length::C => ("c", FourBar::follower, |design| &mut design.c),
-            Length::D => ("d", FourBar::crank_side, |design| &mut design.d),
-            Length::E => ("e", FourBar::follower_side, |design| &mut design.e),
+            Length::Ground => ("ground", OneLoop::ground, |design| &mut design.ground),
+            Length::A => ("a", |linkage| Some(linkage.crank()), |design| &mut design.a),
+            Length::B => ("b", OneLoop::coupler, |design| &mut design.b),
+            Length::C => ("c", |linkage| linkage.four_bar().map(FourBar::follower), |design| &mut design.c),
+            Length::D => ("d", |linkage| Some(linkage.crank_side()), |design| &mut design.d),
+            Length::E => ("e", OneLoop::second_side, |design| &mut design.e),
         }
     }
 
@@ -57,9 +61,9 @@ impl Length {
         Length::ALL.into_iter().find(|length| length.key() == key)
     }
 
-    /// Returns its value in a four-bar; NaN of another kind, whose lengths are not snapped.
-    pub fn of(self, linkage: impl Into<OneLoop>) -> f64 {
-        linkage.into().four_bar().map_or(f64::NAN, self.entry().1)
+    /// Returns its value in a linkage; `None` of a kind that has no such length.
+    pub fn of(self, linkage: impl Into<OneLoop>) -> Option<f64> {
+        (self.entry().1)(&linkage.into())
     }
 
     /// Returns the problem's limits for it; from 0 to infinity if there are none.
@@ -72,7 +76,7 @@ impl Length {
     }
 }
 
-type Entry = (&'static str, fn(&FourBar) -> f64, fn(&mut DesignSpec) -> &mut Option<Limits>);
+type Entry = (&'static str, fn(&OneLoop) -> Option<f64>, fn(&mut DesignSpec) -> &mut Option<Limits>);
 
 /// The dimensions that are fixed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -136,6 +140,9 @@ pub fn refit(
     evaluations: u64,
 ) -> (Option<Candidate>, u64) {
     let problem = context.problem;
+    if candidate.linkage.kind() != LoopKind::FourBar {
+        return fit_slider(context, candidate, fixed, evaluations);
+    }
     let design = &problem.spec().design;
     let ground = fixed.get(Length::Ground).is_some() || fixed.ground_angle_deg.is_some();
     let has_pivot = design.follower_pivot.is_some() || fixed.follower_pivot.is_some();
@@ -192,6 +199,88 @@ fn fit(
     (found, fitted.evaluations)
 }
 
+/// As [`refit`] of a linkage with a slider.
+fn fit_slider(
+    context: Context<'_>,
+    candidate: &Candidate,
+    fixed: &Fixed,
+    evaluations: u64,
+) -> (Option<Candidate>, u64) {
+    let problem = context.problem;
+    let mut spec = problem.spec().clone();
+    spec.design = fixed.design(&spec.design, false);
+    let Ok(narrowed) = Problem::new(spec) else { return (None, 0) };
+    let (end, used) = sliders::refit(context.of(&narrowed), candidate, (LONG_FIT, evaluations, 0.0));
+    let found = end.and_then(|found| {
+        let linkage = slider_to_the_digit(&found.linkage, fixed)?;
+        assess_again(problem, &Candidate { linkage, ..found })
+    });
+    (found, used)
+}
+
+/// Returns a linkage with a slider with its fixed lengths at exactly their fixed values: the ground by moving B along it (A if
+/// B is fixed), d and e by moving P. `None` if they are off by more than the rounding of a fit.
+fn slider_to_the_digit(linkage: &OneLoop, fixed: &Fixed) -> Option<OneLoop> {
+    if !are_near(linkage, fixed) {
+        return None;
+    }
+    let z = linkage.coupler_offset();
+    let offset = |coupler: Option<f64>| match (fixed.get(Length::D), fixed.get(Length::E), coupler) {
+        // The triangle of b, d and e, P on its side of C-D.
+        (Some(d), Some(e), Some(b)) => {
+            let along = (d * d - e * e + b * b) / (2.0 * b);
+            let across = ((d - along) * (d + along)).max(0.0).sqrt();
+            Complex::new(along, across.copysign(z.im))
+        }
+        (Some(d), _, _) => z * (d / z.norm()),
+        (None, Some(e), Some(b)) => b + (z - b) * (e / (z - b).norm()),
+        _ => z,
+    };
+    let (crank, assembly) = (fixed.get(Length::A).unwrap_or(linkage.crank()), linkage.assembly());
+    match linkage {
+        OneLoop::FourBar(_) => None,
+        OneLoop::SliderCrank(l) => {
+            let coupler = fixed.get(Length::B).unwrap_or(l.coupler());
+            let line = (l.line_point(), l.line_direction().arg());
+            let offset = offset(Some(coupler));
+            let made =
+                SliderCrank::from_parts(linkage.crank_pivot(), [crank, coupler], line, offset, assembly)
+                    .ok()?;
+            Some(OneLoop::SliderCrank(made))
+        }
+        OneLoop::InvertedSliderCrank(l) => {
+            let mut pivots = [linkage.crank_pivot(), l.block_pivot()];
+            let along = pivots[1] - pivots[0];
+            let (ground, angle) = (fixed.get(Length::Ground), fixed.ground_angle_deg);
+            let both = fixed.crank_pivot.is_some() && fixed.follower_pivot.is_some();
+            if (ground.is_some() || angle.is_some()) && !both {
+                let along = Complex::from_polar(
+                    ground.unwrap_or(along.norm()),
+                    angle.map_or(along.arg(), f64::to_radians),
+                );
+                if fixed.follower_pivot.is_some() {
+                    pivots[0] = pivots[1] - along;
+                } else {
+                    pivots[1] = pivots[0] + along;
+                }
+            }
+            let made =
+                InvertedSliderCrank::from_parts(pivots, crank, l.offset(), offset(None), assembly).ok()?;
+            Some(OneLoop::InvertedSliderCrank(made))
+        }
+    }
+}
+
+/// Returns whether the fixed lengths of a linkage are at their values up to the rounding of a fit.
+fn are_near(linkage: &OneLoop, fixed: &Fixed) -> bool {
+    /// The feasibility tolerance of a fit.
+    const HAIR: f64 = 1e-6;
+    let near = |(length, value): &(Length, f64)| {
+        length.of(*linkage).is_some_and(|own| (own - value).abs() <= HAIR * linkage.longest().max(*value))
+    };
+    fixed.lengths.iter().all(near)
+}
+
 /// Returns the linkage with A moved along the ground line to the distance of a fixed ground; `None` if the ground is
 /// not fixed.
 fn on_its_circle(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
@@ -204,12 +293,7 @@ fn on_its_circle(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
 /// Returns the linkage with its fixed lengths at exactly their fixed values, which a fit meets only approximately: the
 /// ground by moving B (A if B is fixed) along it. `None` if they are off by more than the rounding of a fit.
 fn to_the_digit(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
-    /// The feasibility tolerance of a fit.
-    const HAIR: f64 = 1e-6;
-    let near = |(length, value): &(Length, f64)| {
-        (length.of(linkage) - value).abs() <= HAIR * linkage.longest_link().max(*value)
-    };
-    if !fixed.lengths.iter().all(near) {
+    if !are_near(&OneLoop::FourBar(*linkage), fixed) {
         return None;
     }
     let mut n: NaturalCoordinates = linkage.natural_coordinates();

@@ -103,7 +103,7 @@ pub fn snap(context: Context<'_>, candidate: &Candidate, request: &Request) -> R
     }
     let near = |length: Length, at: &Candidate, count: usize| {
         let Limits(low, high) = length.limits(design);
-        request.stock.near(length.of(at.linkage), count, low, high)
+        request.stock.near(length.of(at.linkage).unwrap_or(f64::NAN), count, low, high)
     };
     let mut plain = request.fixed.clone();
     for &length in &lengths {
@@ -196,7 +196,8 @@ fn to_snap(problem: &Problem, candidate: &Candidate, request: &Request) -> Vec<L
     let both_pivots = (request.fixed.crank_pivot.is_some() || whole(design.crank_pivot))
         && (request.fixed.follower_pivot.is_some() || whole(design.follower_pivot));
     let free = |length: &Length| {
-        request.fixed.get(*length).is_none()
+        length.of(candidate.linkage).is_some()
+            && request.fixed.get(*length).is_none()
             && !length.limits(design).is_fixed()
             && !(*length == Length::Ground && both_pivots)
     };
@@ -225,7 +226,8 @@ fn neighbours(choice: &Choice, lengths: &[Length], stock: &Stock, design: &Desig
     let moves: Vec<(Length, f64)> = lengths
         .iter()
         .flat_map(|&length| {
-            let at = choice.fixed.get(length).unwrap_or_else(|| length.of(choice.candidate.linkage));
+            let at =
+                choice.fixed.get(length).or_else(|| length.of(choice.candidate.linkage)).unwrap_or(f64::NAN);
             let Limits(low, high) = length.limits(design);
             let near = stock.near(at, NEAR, low, high);
             let up = near.iter().copied().filter(|v| *v > at).fold(f64::INFINITY, f64::min);

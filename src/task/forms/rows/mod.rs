@@ -54,20 +54,20 @@ pub enum Side {
 
 impl Side {
     /// The sides in the order of their numbers.
-    const ALL: [Side; 4] = [Side::XMin, Side::YMin, Side::XMax, Side::YMax];
+    pub(in crate::task::forms) const ALL: [Side; 4] = [Side::XMin, Side::YMin, Side::XMax, Side::YMax];
 
     /// Returns the coordinate that the side limits (0: x, 1: y).
-    fn axis(self) -> usize {
+    pub(in crate::task::forms) fn axis(self) -> usize {
         self.index() % 2
     }
 
     /// Returns the sign of that coordinate's axis towards the inside of the box.
-    fn sign(self) -> f64 {
+    pub(in crate::task::forms) fn sign(self) -> f64 {
         if self.index() < 2 { 1.0 } else { -1.0 }
     }
 
     /// Returns the component of a vector towards the inside of the box.
-    fn inwards(self, z: Complex) -> f64 {
+    pub(in crate::task::forms) fn inwards(self, z: Complex) -> f64 {
         self.sign() * if self.axis() == 0 { z.re } else { z.im }
     }
 

@@ -24,22 +24,19 @@
 //! prescribed   d(arg u) = -G_k/G_w by the unknowns,  -G_phi/G_w by the crank's angle
 //! ```
 
+use super::curve::{Steps, carry};
 use super::limits::Limited;
 use super::output::Outputs;
 use super::shape::{Closure, FRAME, Miss, OFFSET, SHAPE, SliderShape, UNKNOWNS, Unknowns};
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::{ways_round, wrapped};
 use crate::mechanism::{AssemblyMode, Complex, LoopKind, turned, xy};
+use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
 };
 use crate::task::AngleOffset;
 use crate::task::forms::torus::{ANGLE_ROW, Positions, gaps_along, joined};
-
-/// Most Newton steps that bring a position back to its curve; each squares the miss.
-const RETURN_STEPS: usize = 12;
-/// Tolerance for a position on its curve: its miss over the largest length.
-const ON_CURVE: f64 = 1e-14;
 
 /// The crank angles of a fit.
 #[derive(Clone, Debug)]
@@ -138,7 +135,8 @@ impl<const R: usize> SliderFit<'_, R> {
         gradient[..SHAPE].copy_from_slice(&limit.by_shape);
         gradient[FRAME] = limit.by_frame;
         let mut own = [None; MOST_OWN];
-        if let Some((j, [by_crank, by_coupler])) = limit.at {
+        for (own, at) in own.iter_mut().zip(limit.at) {
+            let Some((j, [by_crank, by_coupler])) = at else { continue };
             let miss = shape.miss(state[j]);
             let n2 = miss.by_crank * miss.by_crank + miss.by_coupler * miss.by_coupler;
             match &self.angles {
@@ -148,7 +146,7 @@ impl<const R: usize> SliderFit<'_, R> {
                         *out -= back * by;
                     }
                     let along = by_crank * miss.by_coupler - by_coupler * miss.by_crank;
-                    own[0] = Some((j, self.forward() * along / n2.sqrt()));
+                    *own = Some((j, self.forward() * along / n2.sqrt()));
                 }
                 Angles::Prescribed(_, offset, _) if miss.by_coupler != 0.0 => {
                     let back = by_coupler / miss.by_coupler;
@@ -166,8 +164,7 @@ impl<const R: usize> SliderFit<'_, R> {
 
 /// Brings positions to the curves of a linkage; `false` if one does not get there.
 pub fn settle(shape: &SliderShape, positions: &mut Positions) -> bool {
-    computed(RETURN_STEPS * positions.len());
-    positions.iter_mut().all(|position| settled(shape, position))
+    carry(None, shape, positions)
 }
 
 /// Returns the angle that prescribed increments are added to.
@@ -194,32 +191,6 @@ pub(super) fn add_turn(gradient: &mut [f64; UNKNOWNS], by: f64, shape: &SliderSh
             }
         }
     }
-}
-
-/// Brings a position to its curve by least-norm Newton steps of at most a radian.
-fn settled(shape: &SliderShape, [e, u]: &mut [Complex; 2]) -> bool {
-    let near = ON_CURVE * shape.largest();
-    for _ in 0..=RETURN_STEPS {
-        let miss = shape.miss([*e, *u]);
-        if miss.value.abs() <= near {
-            return true;
-        }
-        let n2 = miss.by_crank * miss.by_crank + miss.by_coupler * miss.by_coupler;
-        if n2.is_nan() || n2 == 0.0 {
-            return false;
-        }
-        let step = -miss.value / n2;
-        let longest = (step * n2.sqrt()).abs().max(1.0);
-        turn_by(e, step * miss.by_crank / longest);
-        turn_by(u, step * miss.by_coupler / longest);
-    }
-    false
-}
-
-fn turn_by(z: &mut Complex, angle: f64) {
-    let h = Complex::new(1.0, 0.5 * angle);
-    *z = *z * h / h.conj();
-    *z *= 1.5 - 0.5 * z.norm_sqr();
 }
 
 /// Returns +1 if the points run along the tangents of their curve, -1 if against; 0 if that is undecided. As with four-bars.
@@ -372,14 +343,11 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
         let shapes = (SliderShape::of(self.kind, from), SliderShape::of(self.kind, to));
         let (Some(from), Some(to)) = shapes else { return false };
         out.clone_from(state);
-        let forward = self.forward();
-        for (position, tau) in out.iter_mut().zip(tau) {
-            if let Some([by_e, by_u]) = tangent_of(&from.miss(*position)) {
-                turn_by(&mut position[0], forward * tau * by_e);
-                turn_by(&mut position[1], forward * tau * by_u);
-            }
-        }
-        settle(&to, out)
+        carry(Some(&Steps { on: &from, forward: self.forward(), tau }), &to, out)
+    }
+
+    fn wide<T>(&self, work: impl FnOnce() -> T) -> T {
+        vectorised(work)
     }
 
     fn gaps(&self, x: &Unknowns, state: &Positions, gaps: &mut Vec<f64>) -> bool {

@@ -13,7 +13,10 @@
 use super::ends;
 use super::regions::Regions;
 use super::shape::{Closure, FRAME, OFFSET, SHAPE, SliderShape, UNKNOWNS};
+use super::sides::Sides;
+use super::swept::BoxLimits;
 use crate::mechanism::{AssemblyMode, Complex, LoopKind, cross, dot, turned};
+use crate::numbers::optimise::levenberg_marquardt::MOST_OWN;
 use crate::task::spec::{DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, Limits, TransmissionOver};
 use crate::task::{Problem, region::Region};
 use std::f64::consts::PI;
@@ -30,14 +33,21 @@ pub struct Bar {
     pub by_shape: [f64; SHAPE],
     /// Its derivative by the frame of the body.
     pub by_frame: f64,
-    /// The point on whose position it depends, with its derivatives by the angles of crank and coupler there.
-    pub at: Option<(usize, [f64; 2])>,
+    /// The points on whose positions it depends, with its derivatives by the angles of crank and coupler there.
+    pub at: [Option<(usize, [f64; 2])>; MOST_OWN],
 }
 
 impl Bar {
     /// Returns an inequality that depends on the unknowns of the linkage alone.
     pub(super) fn still(value: f64, by_shape: [f64; SHAPE]) -> Bar {
-        Bar { value, by_shape, by_frame: 0.0, at: None }
+        Bar { value, by_shape, by_frame: 0.0, at: [None; MOST_OWN] }
+    }
+
+    /// Returns an inequality that depends on the position of a point too.
+    fn moving(value: f64, by_shape: [f64; SHAPE], at: (usize, [f64; 2])) -> Bar {
+        let mut bar = Bar::still(value, by_shape);
+        bar.at[0] = Some(at);
+        bar
     }
 }
 
@@ -64,6 +74,10 @@ pub struct Limited {
     /// Middle and half widths of the box that the line passes, if one is given.
     line: Option<[Complex; 2]>,
     regions: Regions,
+    /// The sides of the coupler and the ground.
+    sides: Sides,
+    /// The box of all joints over the motion.
+    swept: BoxLimits,
 }
 
 fn clipped(limits: Option<Limits>, default: [f64; 2], shift: f64, size: f64) -> (f64, f64) {
@@ -137,6 +151,20 @@ impl Limited {
             longest,
             one_branch: !problem.branch_any(),
             regions: Regions::of(require, centre, size),
+            sides: Sides::of(design, size),
+            swept: BoxLimits {
+                footprint: require.footprint_in.map(|[x0, y0, x1, y1]| {
+                    let shifted = |value: f64, middle: f64| (value - middle) / size;
+                    [
+                        shifted(x0, centre.re),
+                        shifted(y0, centre.im),
+                        shifted(x1, centre.re),
+                        shifted(y1, centre.im),
+                    ]
+                }),
+                extent: require.extent_max.map(|most| most / size),
+                whole: problem.task().closed() || problem.task().repeats_first(),
+            },
             line: design.line_point.map(|[x, y]| {
                 let low = (Complex::new(x.0, y.0) - centre) / size;
                 let high = (Complex::new(x.1, y.1) - centre) / size;
@@ -197,7 +225,9 @@ impl Limited {
             }
         }
         self.lengths(shape, each);
+        self.sides.each(shape, each);
         self.regions.each(shape, frame, each);
+        self.swept.each(shape, self.turns, positions, each);
         if let (Some([middle, half]), Closure::Line { height, direction: s, .. }) = (self.line, shape.closure)
         {
             // The box reaches so far across the line, with its derivative by the line's angle.
@@ -293,7 +323,7 @@ fn transmission(shape: &SliderShape, k: f64, (j, [e, _]): (usize, [Complex; 2]),
                 (k * length - side * offset, by, -shape.crank * dot(turned(e), v))
             }
         };
-        each(Bar { at: Some((j, [by_crank, 0.0])), ..Bar::still(value - MARGIN, by_shape) });
+        each(Bar::moving(value - MARGIN, by_shape, (j, [by_crank, 0.0])));
     }
 }
 
@@ -312,6 +342,6 @@ fn branch(shape: &SliderShape, assembly: AssemblyMode, (j, [e, u]): (usize, [Com
             (dot(v, u), by, [-shape.crank * dot(turned(e), u), dot(v, turned(u))])
         }
     };
-    let at = Some((j, by_angles.map(|by| sign * by)));
-    Bar { at, ..Bar::still(sign * value - MARGIN, by_shape.map(|by| sign * by)) }
+    let at = (j, by_angles.map(|by| sign * by));
+    Bar::moving(sign * value - MARGIN, by_shape.map(|by| sign * by), at)
 }

@@ -201,6 +201,8 @@ impl SliderShape {
     /// ```text
     /// line    Im((A + a e + b u) conj s) - q        block    Im((B - A - a e) conj u) - h
     /// ```
+    // Where only the value and the slopes are used, the rest is not computed.
+    #[inline(always)]
     pub fn miss(&self, [e, u]: [Complex; 2]) -> Miss {
         match self.closure {
             Closure::Line { coupler, height, direction: s } => {

@@ -4,12 +4,14 @@ use super::fit::{Angles, BodyAngles, SliderFit};
 use super::limits::Limited;
 use super::output::Outputs;
 use super::shape::{SliderShape, Unknowns};
-use crate::mechanism::{AssemblyMode, Complex, LoopKind};
+use super::swept::BoxLimits;
+use crate::mechanism::{AssemblyMode, Complex, LoopKind, bounding_box};
 use crate::numbers::arithmetic::streams::{stream, uniform};
 use crate::numbers::optimise::levenberg_marquardt::derivative_error;
 use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, Limits, RequireSpec};
 use crate::task::{AngleOffset, Output, Problem};
+use std::f64::consts::TAU;
 
 /// Draws a linkage that closes for cranks within half a radian of the x axis, as unknowns.
 fn drawn(kind: LoopKind, case: u64) -> (Unknowns, SliderShape) {
@@ -54,6 +56,8 @@ fn limits(kind: LoopKind, turns: bool, ends: bool) -> Limited {
         longest_max: Some(11.0),
         pivots_in: Some(Region::Polygon(vec![[-2.0, -2.0], [3.0, -1.5], [2.0, 2.0]])),
         pins_in: Some(Region::Box([-2.0, -1.0, 1.0, 2.0])),
+        footprint_in: Some([-2.0, -2.0, 4.0, 3.0]),
+        extent_max: Some(4.0),
         ..RequireSpec::default()
     };
     let points: Vec<[f64; 2]> = (0..8).map(|j| [f64::from(j) * 0.3, 0.2 * f64::from(j * j)]).collect();
@@ -173,6 +177,41 @@ fn a_shape_is_the_linkage_that_it_becomes() {
                     assert!(apart < 1e-12, "{kind} {case} {j}: {apart}");
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn the_extent_is_the_diagonal_of_the_box_of_all_joints() {
+    for kind in [LoopKind::SliderCrank, LoopKind::InvertedSliderCrank] {
+        for case in 0..60 {
+            let (_, shape) = drawn(kind, case);
+            // Over a turn, and over a stretch that begins and ends at positions.
+            let whole = case % 2 == 0;
+            let (from, span) = if whole { (0.3, TAU) } else { (-1.2 + 0.01 * case as f64, 2.4) };
+            let at = |angle: f64| {
+                let e = Complex::from_polar(1.0, angle);
+                Some([e, shape.coupler_direction(e, 1.0)?])
+            };
+            let positions = (0..8).map(|j| at(from + span * f64::from(j) / if whole { 8.0 } else { 7.0 }));
+            let Some(positions) = positions.collect::<Option<Vec<_>>>() else { continue };
+            let linkage = shape.linkage(AssemblyMode::Plus).expect("a linkage");
+            if whole && !linkage.mobility().input_turns_fully() {
+                continue;
+            }
+            let mut reached: Vec<Complex> = linkage.pivots().collect();
+            const DENSE: i32 = 20_000;
+            for i in 0..=DENSE {
+                let angle = from + span * f64::from(i) / f64::from(DENSE);
+                let joints = linkage.joints_with(angle, AssemblyMode::Plus).expect("it closes").joints;
+                reached.extend([joints.crank_pin, joints.follower_pin, joints.coupler_point]);
+            }
+            let [low, high] = bounding_box(reached.into_iter());
+            let limits = BoxLimits { footprint: None, extent: Some(0.0), whole };
+            let mut least = f64::INFINITY;
+            limits.each(&shape, whole, &positions, &mut |bar| least = least.min(bar.value));
+            let apart = (-least - (high - low).norm()).abs();
+            assert!(apart < 1e-6, "{kind} {case}: {apart}");
         }
     }
 }

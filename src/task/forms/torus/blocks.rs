@@ -4,9 +4,18 @@ use crate::mechanism::Complex;
 use crate::task::forms::design_space::Shape;
 
 /// Most Newton steps that bring a position back to its curve; each squares the miss.
-pub(super) const RETURN_STEPS: usize = 12;
+pub(in crate::task::forms) const RETURN_STEPS: usize = 12;
 /// Tolerance for a position on its curve: its miss over the largest link squared.
 const ON_CURVE: f64 = 1e-14;
+
+/// A closure G(e, u) = 0 of a loop, on whose curve positions lie.
+pub(in crate::task::forms) trait Curve {
+    /// Returns G, G_phi, G_w at e = (ex, ey), u = (ux, uy).
+    fn frame(&self, position: [f64; 4]) -> (f64, f64, f64);
+
+    /// Returns the |G| below which a position is on the curve.
+    fn near(&self) -> f64;
+}
 
 /// The parameters of a shape on which its positions depend.
 #[derive(Clone, Copy)]
@@ -32,14 +41,21 @@ impl Loop {
             near: ON_CURVE * largest * largest,
         }
     }
+}
 
-    /// Returns (|Y|^2 - c^2)/2, c_phi, c_w at e = (ex, ey), u = (ux, uy).
+impl Curve for Loop {
+    /// G = (|Y|^2 - c^2)/2.
     #[inline(always)]
     fn frame(&self, [ex, ey, ux, uy]: [f64; 4]) -> (f64, f64, f64) {
         let yx = self.ground[0] + self.a * ex + self.b * ux;
         let yy = self.ground[1] + self.a * ey + self.b * uy;
         let miss = 0.5 * (yx * yx + yy * yy - self.c2);
         (miss, self.a * (yy * ex - yx * ey), self.b * (yy * ux - yx * uy))
+    }
+
+    #[inline(always)]
+    fn near(&self) -> f64 {
+        self.near
     }
 }
 
@@ -61,10 +77,10 @@ const LANES: usize = 8;
 
 /// Positions as blocks of e_x, e_y, u_x, u_y, each of [`LANES`] positions, so that the loops over a block become vector
 /// instructions. The last block is filled up with the last position.
-pub(super) struct Blocks(Vec<[[f64; LANES]; 4]>);
+pub(in crate::task::forms) struct Blocks(Vec<[[f64; LANES]; 4]>);
 
 impl Blocks {
-    pub(super) fn gather(positions: &[[Complex; 2]]) -> Blocks {
+    pub(in crate::task::forms) fn gather(positions: &[[Complex; 2]]) -> Blocks {
         let block = |part: &[[Complex; 2]]| {
             let mut block = [[0.0; LANES]; 4];
             for lane in 0..LANES {
@@ -77,7 +93,7 @@ impl Blocks {
         Blocks(positions.chunks(LANES).map(block).collect())
     }
 
-    pub(super) fn scatter(&self, positions: &mut [[Complex; 2]]) {
+    pub(in crate::task::forms) fn scatter(&self, positions: &mut [[Complex; 2]]) {
         for (part, [ex, ey, ux, uy]) in positions.chunks_mut(LANES).zip(&self.0) {
             for (lane, position) in part.iter_mut().enumerate() {
                 *position = [Complex::new(ex[lane], ey[lane]), Complex::new(ux[lane], uy[lane])];
@@ -87,7 +103,7 @@ impl Blocks {
 
     /// Moves each position along its own curve by `forward` tau.
     #[inline(always)]
-    pub(super) fn step(&mut self, on: &Loop, forward: f64, tau: &[f64]) {
+    pub(in crate::task::forms) fn step(&mut self, on: &impl Curve, forward: f64, tau: &[f64]) {
         for (tau, [ex, ey, ux, uy]) in tau.chunks(LANES).zip(&mut self.0) {
             let mut steps = [tau[tau.len() - 1]; LANES];
             steps[..tau.len()].copy_from_slice(tau);
@@ -103,8 +119,9 @@ impl Blocks {
     /// Brings the positions back to their curves by least-norm Newton steps of at most a radian; `false` if one does
     /// not get there.
     #[inline(always)]
-    pub(super) fn settle(&mut self, on: &Loop) -> bool {
-        let mut limit = on.near;
+    pub(in crate::task::forms) fn settle(&mut self, on: &impl Curve) -> bool {
+        let near = on.near();
+        let mut limit = near;
         for round in 0..=RETURN_STEPS {
             let mut off = [0_u64; LANES];
             for [ex, ey, ux, uy] in &self.0 {
@@ -126,14 +143,14 @@ impl Blocks {
                     let n2 = by_e * by_e + by_u * by_u;
                     let long = (miss * miss / n2).sqrt();
                     let step = -miss / (n2 * if long > 1.0 { long } else { 1.0 });
-                    let step = if miss.abs() <= on.near { 0.0 } else { step };
+                    let step = if miss.abs() <= near { 0.0 } else { step };
                     (ex[i], ey[i]) = turn(ex[i], ey[i], step * by_e);
                     (ux[i], uy[i]) = turn(ux[i], uy[i], step * by_u);
                 }
             }
             if round + 2 == RETURN_STEPS {
                 // Rounding may keep a position from the last digit.
-                limit = 16.0 * on.near;
+                limit = 16.0 * near;
             }
         }
         false

@@ -36,7 +36,8 @@ use crate::numbers::optimise::levenberg_marquardt::{
 };
 use crate::task::defect::ORDER_TOLERANCE;
 use crate::task::{Body, Problem, Setting};
-use blocks::{Blocks, Loop, RETURN_STEPS};
+use blocks::Loop;
+pub(in crate::task::forms) use blocks::{Blocks, Curve, RETURN_STEPS};
 pub(in crate::task::forms) use order::{gaps_along, joined};
 use std::f64::consts::TAU;
 
