@@ -186,7 +186,7 @@ fn shapes(options: &Options) {
         }
         errors.sort_by(f64::total_cmp);
         let (best, worst) = (errors[0], errors[errors.len() - 1]);
-        let (middle, used) = (median(&errors), median(&evaluations));
+        let [middle, used] = [&errors, &evaluations].map(|of| median(of).unwrap_or(f64::NAN));
         println!("| {name} | {best:.5} | {middle:.5} | {worst:.5} | {used:.0} |");
         let is_measured = options.dyads == 2 && options.time_limit_s >= 10.0 && !options.as_in_file;
         assert!(!is_measured || middle <= *most, "{name}: {middle} is above {most}");

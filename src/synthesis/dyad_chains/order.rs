@@ -65,3 +65,37 @@ impl Order {
         phases.rotate_right((cut + 1) % n);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numbers::arithmetic::streams::{stream, uniform};
+
+    #[test]
+    fn open_phases_become_the_nearest_sequence_in_order() {
+        let mut phases = [0.0, 2.0, 1.0, 1.0, 3.0, 2.5];
+        Order::default().project(&mut phases, false);
+        let third = 4.0 / 3.0;
+        for (phase, wanted) in phases.into_iter().zip([0.0, third, third, third, 2.75, 2.75]) {
+            assert!((phase - wanted).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn phases_in_order_stay_as_they_are_and_others_end_in_order_within_a_turn() {
+        let draws = &mut stream(62, 0);
+        let mut order = Order::default();
+        for round in 0..500 {
+            let closed = round % 2 == 0;
+            let start = uniform(draws, -9.0, 9.0);
+            let mut phases: Vec<f64> =
+                (0..30).map(|i| start + 0.2 * f64::from(i) + uniform(draws, -0.5, 0.5)).collect();
+            order.project(&mut phases, closed);
+            assert!(phases.windows(2).all(|pair| pair[0] <= pair[1] + 1e-12));
+            assert!(phases[29] - phases[0] <= TAU + 1e-12);
+            let mut again = phases.clone();
+            order.project(&mut again, closed);
+            assert!(phases.iter().zip(&again).all(|(a, b)| (a - b).abs() < 1e-12));
+        }
+    }
+}

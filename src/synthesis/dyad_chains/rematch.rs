@@ -56,7 +56,7 @@ impl Rematch {
             || self.trace(chain),
         );
         let n = points.count;
-        let (first, start) = if points.closed { self.nearest(points) } else { (0, 0) };
+        let (first, start) = if points.closed { self.nearest(points) } else { (0, opposite(phases)) };
         let width = if points.closed { PHASES + 1 } else { PHASES };
         self.from.resize(n * (PHASES + 1), 0);
         // Twice around, so that a turn from any phase on is one range.
@@ -127,5 +127,58 @@ impl Rematch {
             }
         }
         (best.0, best.1)
+    }
+}
+
+/// Returns the index of the phase halfway around from the middle of phases.
+fn opposite(phases: &[f64]) -> usize {
+    let (Some(first), Some(last)) = (phases.first(), phases.last()) else { return 0 };
+    let turns = (0.5 * (first + last) / TAU + 0.5).rem_euclid(1.0);
+    // NaN becomes 0.
+    ((turns * PHASES as f64) as usize).min(PHASES - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::target::Target;
+    use super::*;
+    use crate::mechanism::AssemblyMode;
+    use crate::mechanism::dyad_chain::{DyadChainKind, MAX_PARAMETERS, Placement, Shape};
+
+    #[test]
+    fn points_of_a_curve_are_assigned_to_their_phases() {
+        let mut parameters = [0.0; MAX_PARAMETERS];
+        parameters[..9].copy_from_slice(&[-0.9, -0.5, 0.2, 0.6, 0.5, 1.4, -0.6, -0.4, 0.1]);
+        let shape = Shape { kind: DyadChainKind::SIX_BARS[0], assembly: [AssemblyMode::Plus; 3], parameters };
+        let placement = Placement {
+            origin: Complex::new(0.2, 0.1),
+            ground: Complex::new(1.0, 0.0),
+            pointer: Complex::new(0.4, 0.8),
+        };
+        let chain = DyadChain { shape, placement };
+        // From the 120th of 256 phases on, every fourth; as an open target over three quarters of a turn,
+        // through phase zero.
+        let curve = chain.curve(PHASES);
+        let points: Vec<Complex> = (0..64).map(|i| curve[(120 + 4 * i) % PHASES]).collect();
+        for closed in [true, false] {
+            let points = if closed { points.clone() } else { points[..50].to_vec() };
+            let target = Target::of(&points, closed, 100, 64).expect("a target");
+            // The chain in the coordinates of the normalised target.
+            let [t, s, z] = chain.placement.numbers();
+            let placement = Placement {
+                origin: (t - target.centre) / target.radius,
+                ground: s / target.radius,
+                pointer: z / target.radius,
+            };
+            // Phases so far that are nearly right in the mean.
+            let mut phases = vec![TAU * (120 + 2 * points.len()) as f64 / PHASES as f64 + 0.3; points.len()];
+            Rematch::default().assign(&target.all[0], &DyadChain { shape, placement }, &mut phases);
+            for (i, phase) in phases.iter().enumerate() {
+                let wanted = TAU * (120 + 4 * i) as f64 / PHASES as f64;
+                let turns = (phase - wanted) / TAU;
+                assert!((turns - turns.round()).abs() < 1e-9, "{closed} {i}: {phase} {wanted}");
+                assert!(i == 0 || *phase >= phases[i - 1]);
+            }
+        }
     }
 }

@@ -225,3 +225,93 @@ fn pivot_row(
     row[count + 6] = residual;
     row
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::target::Target;
+    use super::*;
+    use crate::mechanism::AssemblyMode;
+    use crate::mechanism::dyad_chain::{DyadChainKind, Placement, Shape};
+    use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
+
+    const LIMITS: Limits = Limits {
+        cosine: 0.6,
+        longest: -0.5,
+        ratio: 0.4,
+        pivots_in: Some([Complex::new(-0.1, -0.1), Complex::new(0.1, 0.1)]),
+        cosine_weight: 4.0,
+        size_weight: 0.7,
+        pivot_weight: 0.9,
+    };
+
+    /// The sum of squares at a shape and a placement, with the phases held.
+    fn sum_sq(trial: &mut Trial, points: &Points, bodies: &Bodies, (shape, at): (Shape, Placement)) -> f64 {
+        trial.shape = shape;
+        trial.evaluate(points, &LIMITS, bodies, &mut Frames::of(ComplexLanes::ZERO), None);
+        trial.at = at;
+        trial.find_excursions(points);
+        let n = points.count as f64;
+        let over: f64 = trial.excursions.iter().map(|e| e.excess * e.excess).sum();
+        let hinges = LIMITS.of_transmission(&trial.of) + LIMITS.of_sizes(&trial.of, &at, bodies);
+        trial.misfit_at(points, &at) + n * hinges + over
+    }
+
+    fn moved(shape: Shape, at: Placement, unknown: usize, step: f64) -> (Shape, Placement) {
+        let (mut shape, mut at) = (shape, at);
+        let count = shape.count();
+        let vector = |i: usize| if i % 2 == 0 { Complex::new(step, 0.0) } else { Complex::new(0.0, step) };
+        match unknown.checked_sub(count) {
+            None => shape.parameters[unknown] += step,
+            Some(i @ 0..2) => at.origin += vector(i),
+            Some(i @ 2..4) => at.ground += vector(i),
+            Some(i) => at.pointer += vector(i),
+        }
+        (shape, at)
+    }
+
+    fn drawn(draws: &mut Stream, kind: DyadChainKind) -> (Shape, Placement) {
+        let mut shape = Trial::default().shape;
+        (shape.kind, shape.assembly[1]) = (kind, AssemblyMode::Minus);
+        let count = shape.count();
+        shape.parameters[..count].fill_with(|| uniform(draws, -0.8, 0.8));
+        let mut place = || Complex::new(uniform(draws, -1.0, 1.0), uniform(draws, -1.0, 1.0));
+        (shape, Placement { origin: place(), ground: place(), pointer: place() })
+    }
+
+    #[test]
+    fn the_gradient_of_all_residuals_and_hinges_is_that_of_central_differences() {
+        let draws = &mut stream(61, 0);
+        let targets: Vec<Complex> = (0..20).map(|i| Complex::from_polar(1.0, 0.31 * f64::from(i))).collect();
+        let target = Target::of(&targets, true, 48, 64).expect("a target");
+        let points = &target.all[0];
+        let kinds = DyadChainKind::SIX_BARS.into_iter().chain(DyadChainKind::eight_bars());
+        for kind in kinds {
+            let (shape, at) = drawn(draws, kind);
+            let mut bodies = Bodies::default();
+            bodies.of(kind);
+            let mut trial = Trial::default();
+            trial.resize(points.mask.len());
+            for (i, phase) in trial.phases.iter_mut().enumerate() {
+                *phase = 0.3 * i as f64;
+            }
+            let value = sum_sq(&mut trial, points, &bodies, (shape, at));
+            let mut rows = Rows::default();
+            rows.resize(points.mask.len());
+            rows.derive(&trial, points, &LIMITS, &bodies, &mut Frames::of(ComplexLanes::ZERO));
+            let (unknowns, padded) = (shape.count() + 6, points.mask.len());
+            let column = |k: usize| &rows.tangent[k * padded..(k + 1) * padded];
+            for k in 0..unknowns {
+                let along: f64 = column(k).iter().zip(column(unknowns)).map(|(a, b)| a * b).sum();
+                let gradient = 2.0 * (rows.fixed[k][unknowns] + along);
+                let step = 1e-6;
+                let mut at_step = |step| sum_sq(&mut trial, points, &bodies, moved(shape, at, k, step));
+                let difference = (at_step(step) - at_step(-step)) / (2.0 * step);
+                let scale = value + difference.abs();
+                assert!(
+                    (gradient - difference).abs() < 1e-6 * scale,
+                    "{kind:?} {k}: {gradient} {difference}"
+                );
+            }
+        }
+    }
+}

@@ -82,10 +82,12 @@ pub fn search(request: &Request<'_>, watch: Watch<'_>) -> Option<DyadChainOutcom
         next_stream: 0,
         done: DyadChainOutcome::default(),
     };
-    while !search.is_over(&search.archive) {
+    loop {
         search.run_island();
+        if search.is_over(&search.archive) {
+            return Some(search.finished());
+        }
     }
-    Some(search.finished())
 }
 
 /// A search between two rounds.
@@ -143,7 +145,9 @@ impl Search<'_> {
                 (record, improved) = (island.best(), self.done.evaluations);
             }
         }
-        self.done.islands.push(self.rms(island.best()));
+        if !island.ends.is_empty() {
+            self.done.islands.push(self.rms(island.best()));
+        }
         island.ends.into_iter().for_each(|end| self.archive.add(end));
     }
 

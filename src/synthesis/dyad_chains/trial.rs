@@ -131,8 +131,8 @@ impl Trial {
         }
     }
 
-    /// Computes T, S and Z of least squares (METHOD of the free timing: a 2x2 Hermitian system of centred columns); `None`
-    /// if o and v are too nearly proportional.
+    /// Computes T, S and Z of least squares, by a 2x2 Hermitian system of centred columns; `None` if o and v are too nearly
+    /// proportional.
     #[inline(always)]
     fn placed(&self, points: &Points) -> Option<Placement> {
         let per = 1.0 / points.count as f64;
@@ -175,7 +175,7 @@ impl Trial {
 
     /// Returns the sum of squares of P - T_j.
     #[inline(always)]
-    fn misfit_at(&self, points: &Points, at: &Placement) -> f64 {
+    pub(super) fn misfit_at(&self, points: &Points, at: &Placement) -> f64 {
         let [t, s, z] = at.numbers().map(ComplexLanes::splat);
         let mut sum = F64x8::splat(0.0);
         for at in (0..points.mask.len()).step_by(LANES) {
@@ -189,7 +189,7 @@ impl Trial {
     /// Finds the phases of the grid at which the curve is farther from the edge between two neighbouring points than their
     /// mean distance.
     #[inline(always)]
-    fn find_excursions(&mut self, points: &Points) {
+    pub(super) fn find_excursions(&mut self, points: &Points) {
         self.excursions.clear();
         let curve = self.grid.points(self.shape.kind.traced(), self.at.numbers());
         let (n, phases) = (points.count, curve[0].len());
