@@ -138,7 +138,8 @@ fn diagonal(points: &[Complex]) -> f64 {
 fn answer(request: &Request<'_>, seconds: f64) -> (DyadChainAnswer, u64) {
     let began = Instant::now();
     let stopped = || began.elapsed().as_secs_f64() > seconds;
-    let found = search(request, Watch { stopped: &stopped, observer: &|_| {} }).expect("a usable request");
+    let watch = Watch { stopped: &stopped, ..Watch::silent() };
+    let found = search(request, watch, None).expect("a usable request");
     let best = found.answers.into_iter().next().expect("there is an answer");
     (best, found.evaluations)
 }

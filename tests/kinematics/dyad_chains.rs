@@ -5,8 +5,7 @@ use linkwright::internals::mechanism::dyad_chain::proportions::parameters_of;
 use linkwright::internals::mechanism::dyad_chain::sizes::{distance, log_rate, sides};
 use linkwright::internals::mechanism::dyad_chain::transmission::{cosine, cosine_rate};
 use linkwright::internals::mechanism::dyad_chain::{
-    DyadChain, DyadChainKind, Frames, Grid, MAX_DYADS, MAX_PARAMETERS, MAX_SLOPES, Placement, Rates, Shape,
-    Slopes,
+    DyadChain, DyadChainKind, Frames, MAX_DYADS, MAX_PARAMETERS, MAX_SLOPES, Placement, Rates, Shape, Slopes,
 };
 use linkwright::internals::mechanism::{AssemblyMode, Complex};
 use linkwright::internals::numbers::arithmetic::complex_lanes::ComplexLanes;

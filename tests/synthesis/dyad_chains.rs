@@ -4,10 +4,11 @@ use crate::common::root;
 use linkwright::internals::mechanism::chain::{Attachment, Stage};
 use linkwright::internals::mechanism::{Chain, Complex, DyadChainKind};
 use linkwright::internals::synthesis::dyad_chains::{
-    DyadChainAnswer, DyadChainLimits, DyadChainOutcome, Request, Watch, search,
+    DyadChainAnswer, DyadChainLimits, DyadChainOutcome, DyadChainState, Request, Watch, search,
 };
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
+use std::sync::Mutex;
 
 fn shape(name: &str) -> Vec<Complex> {
     let file = root().join(format!("problems/literature/shapes/{name}.csv"));
@@ -54,7 +55,7 @@ fn request<'a>(points: &'a [Complex], closed: bool, evaluations: u64) -> Request
 }
 
 fn found(request: &Request<'_>) -> DyadChainOutcome {
-    search(request, Watch { stopped: &|| false, observer: &|_| {} }).expect("a request that can be used")
+    search(request, Watch::silent(), None).expect("a request that can be used")
 }
 
 /// The joints of a chain at a crank angle, by the angles of triangles from the lengths of its stages; `None` if a dyad does not
@@ -183,10 +184,27 @@ fn a_search_has_the_same_digits_twice_and_on_any_number_of_threads() {
 }
 
 #[test]
+fn a_resumed_search_has_the_digits_of_one_that_was_not_interrupted() {
+    let points = shape("S");
+    // Four-bars: their islands end soon.
+    let whole = Request { kinds: &[DyadChainKind::FOUR_BAR], ..request(&points, false, 100_000) };
+    let states = Mutex::new(Vec::new());
+    let keeper = |state: &DyadChainState| states.lock().expect("no thread panics").push(state.clone());
+    let uninterrupted = search(&whole, Watch { keeper: &keeper, ..Watch::silent() }, None);
+    let states = states.into_inner().expect("no thread panics");
+    assert!(states.len() >= 2);
+    let text = serde_json::to_string(&states[0]).expect("it is data");
+    let state: DyadChainState = serde_json::from_str(&text).expect("it was written");
+    assert_eq!(state, states[0]);
+    assert_eq!(search(&whole, Watch::silent(), Some(&state)), uninterrupted);
+}
+
+#[test]
 fn a_search_that_is_stopped_at_once_has_an_answer_within_the_limits_or_none() {
     let points = shape("heart");
     let request = request(&points, true, 1_000_000_000);
-    let found = search(&request, Watch { stopped: &|| true, observer: &|_| {} }).expect("it can be used");
+    let watch = Watch { stopped: &|| true, ..Watch::silent() };
+    let found = search(&request, watch, None).expect("it can be used");
     for answer in &found.answers {
         check(answer, &request);
     }
@@ -209,7 +227,6 @@ fn fixed_pivots_stay_in_their_box() {
 #[test]
 fn requests_that_cannot_be_used_have_no_outcome() {
     let points = shape("heart");
-    let watch = Watch { stopped: &|| false, observer: &|_| {} };
     let usable = request(&points, true, 1);
     let with = |limits| Request { limits, ..usable };
     let limits = usable.limits;
@@ -222,6 +239,6 @@ fn requests_that_cannot_be_used_have_no_outcome() {
         with(DyadChainLimits { longest_max: 0.0, ..limits }),
         with(DyadChainLimits { link_ratio_max: 1.0, ..limits }),
     ] {
-        assert!(search(&refused, watch).is_none());
+        assert!(search(&refused, Watch::silent(), None).is_none());
     }
 }

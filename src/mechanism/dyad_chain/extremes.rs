@@ -15,6 +15,12 @@ use std::f64::consts::TAU;
 
 /// Most steps of the regula falsi.
 const STEPS: usize = 40;
+/// Slopes below this share of |X - Y|^2 a radian are zero.
+const FLAT: f64 = 1e-12;
+/// Steps of a step in which two extremes are told apart.
+const FINER: i32 = 8;
+/// Local extremes are refined and compared if their parabolas differ by at most this share of the range of the squares.
+const NEARLY_EQUAL: f64 = 0.02;
 /// Width of the bracket, in radians, at which it ends.
 const CLOSE: f64 = 1e-11;
 
@@ -36,60 +42,106 @@ pub fn extremes(of: &Proportions, dyad: usize, grid: &Grid) -> [Extreme; 2] {
         return [at((1.0 - p).abs(), 1.0), at(1.0 + p, -1.0)];
     }
     let distances = grid.distances_sq(of, dyad);
-    let (mut low, mut high) = (0, 0);
-    for (i, distance) in distances.iter().enumerate() {
-        if *distance < distances[low] {
-            low = i;
+    [1.0, -1.0].map(|sign| extreme(of, dyad, &distances, sign))
+}
+
+/// Finds the least (`sign` +1) or the greatest (-1) distance from its squares on the grid.
+///
+/// Two local extremes may be nearly equal: which of them is the extreme of the turn must not be left to the samples, or the
+/// distance would jump as the chain changes.
+#[inline(always)]
+fn extreme(of: &Proportions, dyad: usize, distances_sq: &[f64; PHASES], sign: f64) -> Extreme {
+    let at = |i: usize| sign * distances_sq[i % PHASES];
+    let mut vertices = [f64::INFINITY; PHASES];
+    let (mut best, mut least, mut most) = (f64::INFINITY, 0, 0);
+    for i in 0..PHASES {
+        let (before, here, after) = (at(i + PHASES - 1), at(i), at(i + 1));
+        if here < at(least) {
+            least = i;
         }
-        if *distance > distances[high] {
-            high = i;
+        if here > at(most) {
+            most = i;
+        }
+        if here <= before && here < after {
+            // The vertex of the parabola through three samples.
+            let slope = after - before;
+            vertices[i] = here - slope * slope / (8.0 * (before - 2.0 * here + after));
+            best = best.min(vertices[i]);
         }
     }
-    [refined(of, dyad, low, 1.0), refined(of, dyad, high, -1.0)]
+    let first = refined(of, dyad, least, sign);
+    let near = best + NEARLY_EQUAL * (at(most) - at(least));
+    let others = (0..PHASES).filter(|i| *i != least && vertices[*i] <= near);
+    others
+        .map(|i| refined(of, dyad, i, sign))
+        .fold(first, |best, other| if sign * other.distance < sign * best.distance { other } else { best })
 }
 
 /// Refines the extreme next to a phase of the grid: `sign` +1 for a least distance, -1 for a greatest.
 fn refined(of: &Proportions, dyad: usize, near: usize, sign: f64) -> Extreme {
     let step = TAU / PHASES as f64;
     let middle = Grid::phase(near);
+    let phase = zero(of, dyad, [middle, step], sign).unwrap_or_else(|| {
+        // Two extremes lie within a step: the better one by finer samples.
+        let fine = step / f64::from(FINER);
+        let value = |phase: f64| sign * slope_at(of, dyad, phase).0;
+        let phases = (-FINER..=FINER).map(|j| middle + fine * f64::from(j));
+        let best = phases.min_by(|a, b| value(*a).total_cmp(&value(*b))).unwrap_or(middle);
+        zero(of, dyad, [best, fine], sign).unwrap_or(best)
+    });
+    let (sin, cos) = sin_cos(phase);
+    Extreme { distance: slope_at(of, dyad, phase).0.sqrt(), at: Complex::new(cos, sin) }
+}
+
+/// Finds the zero of the slope within a step of a phase, where it rises times `sign`; `None` if the slope has no such signs
+/// there.
+fn zero(of: &Proportions, dyad: usize, [middle, step]: [f64; 2], sign: f64) -> Option<f64> {
     let slope = |phase: f64| sign * slope_at(of, dyad, phase).1;
     let at_middle = slope(middle);
-    // The slope rises through zero at the extreme.
     let (mut a, mut b) = if at_middle < 0.0 { (middle, middle + step) } else { (middle - step, middle) };
-    let (mut fa, mut fb) =
-        if at_middle < 0.0 { (at_middle, slope(middle + step)) } else { (slope(middle - step), at_middle) };
-    let mut best = middle;
-    if fa < 0.0 && fb > 0.0 {
-        let mut last = 0_i8;
-        for _ in 0..STEPS {
-            let x = b - fb * (b - a) / (fb - fa);
-            let fx = slope(x);
-            best = x;
-            if fx < 0.0 {
-                if x - a < CLOSE {
-                    break;
-                }
-                (a, fa) = (x, fx);
-                if last == -1 {
-                    fb *= 0.5;
-                }
-                last = -1;
-            } else if fx > 0.0 {
-                if b - x < CLOSE {
-                    break;
-                }
-                (b, fb) = (x, fx);
-                if last == 1 {
-                    fa *= 0.5;
-                }
-                last = 1;
-            } else {
+    let (mut fa, mut fb) = if at_middle < 0.0 { (at_middle, slope(b)) } else { (slope(a), at_middle) };
+    // An end may be the extreme of the other kind itself, as phases 0 and pi are where X and Y lie on coupler and follower.
+    let flat = FLAT * slope_at(of, dyad, middle).0;
+    let is_bracket = fa < -flat && (fb > flat || fb >= 0.0 && b == middle);
+    if !is_bracket {
+        return (at_middle.abs() <= flat && is_extreme(of, dyad, [middle, step], sign)).then_some(middle);
+    }
+    // The end that was kept last, whose value is halved if it is kept again.
+    let mut kept_a = None;
+    let mut x = middle;
+    for _ in 0..STEPS {
+        if fb <= 0.0 {
+            return Some(b);
+        }
+        x = b - fb * (b - a) / (fb - fa);
+        let fx = slope(x);
+        if fx < 0.0 {
+            if x - a < CLOSE {
                 break;
             }
+            (a, fa) = (x, fx);
+            if kept_a == Some(false) {
+                fb *= 0.5;
+            }
+            kept_a = Some(false);
+        } else {
+            if b - x < CLOSE {
+                break;
+            }
+            (b, fb) = (x, fx);
+            if kept_a == Some(true) {
+                fa *= 0.5;
+            }
+            kept_a = Some(true);
         }
     }
-    let (sin, cos) = sin_cos(best);
-    Extreme { distance: slope_at(of, dyad, best).0.sqrt(), at: Complex::new(cos, sin) }
+    Some(x)
+}
+
+/// Returns whether the distance at a phase is below those a step away, times `sign`.
+fn is_extreme(of: &Proportions, dyad: usize, [middle, step]: [f64; 2], sign: f64) -> bool {
+    let value = |phase: f64| sign * slope_at(of, dyad, phase).0;
+    value(middle) <= value(middle - step).min(value(middle + step))
 }
 
 /// Returns |X - Y|^2 and <X - Y, X' - Y'> of a dyad at a phase.

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `answers` | distinct ends of fits, the best first, and their figures |
 //! | `atlas` | starts: the random chains whose curves resemble the target most |
+//! | `checkpoint` | the state of a search between two islands |
 //! | `constants` | the tuning constants |
 //! | `curve` | curves of random chains, and how well they correlate with a target |
 //! | `draw` | random chains |
@@ -24,6 +25,7 @@
 
 mod answers;
 mod atlas;
+mod checkpoint;
 mod constants;
 mod curve;
 mod draw;
@@ -40,5 +42,6 @@ mod target;
 mod trial;
 
 pub use answers::{DyadChainAnswer, DyadChainOutcome};
+pub use checkpoint::DyadChainState;
 pub use request::{DyadChainLimits, DyadChainProgress, Request, Watch};
 pub use search::search;

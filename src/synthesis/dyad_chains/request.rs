@@ -1,5 +1,6 @@
 //! Requests to the search for dyad chains: the path, the limits, the budget.
 
+use super::checkpoint::DyadChainState;
 use crate::mechanism::{Complex, DyadChainKind};
 
 /// The limits that an answer has to meet.
@@ -71,4 +72,13 @@ pub struct Watch<'a> {
     pub stopped: &'a (dyn Fn() -> bool + Sync),
     /// Told after each round.
     pub observer: &'a (dyn Fn(&DyadChainProgress) + Sync),
+    /// Given the state after each island, from which a search can be resumed.
+    pub keeper: &'a (dyn Fn(&DyadChainState) + Sync),
+}
+
+impl Watch<'_> {
+    /// Returns the watch of a caller who neither stops a search nor looks at it.
+    pub fn silent() -> Self {
+        Watch { stopped: &|| false, observer: &|_| {}, keeper: &|_| {} }
+    }
 }

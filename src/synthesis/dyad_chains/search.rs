@@ -12,6 +12,7 @@
 
 use super::answers::{DyadChainAnswer, DyadChainOutcome, End, Pool, rank};
 use super::atlas::Atlas;
+use super::checkpoint::{DyadChainState, Resumed};
 use super::constants::{
     CASCADE, DRAWS, DRAWS_PER_EVALUATION, ENOUGH, FEW, HOPS, IMPROVED, JOBS, PATIENCE, POOL, PREFILTERED,
     SAME, SECOND_STEPS,
@@ -31,7 +32,8 @@ const STAGE_CHUNKS: [usize; 3] = [16, 4, 2];
 /// Searches for dyad chains whose P draws a path with free timing.
 ///
 /// The answers are the same on any number of threads, and whenever a search is repeated with the same request, unless
-/// `watch` stops it. Memory: a few megabytes and about a megabyte a job that runs. `None` for fewer than three points, points
+/// `watch` stops it. With `earlier`, a state that `watch` was given by a search of the same request with any budget, it goes on
+/// from there; a state of another request is ignored. Memory: a few megabytes and about a megabyte a job that runs. `None` for fewer than three points, points
 /// that coincide, or numbers that are not usable.
 ///
 /// ```
@@ -60,13 +62,17 @@ const STAGE_CHUNKS: [usize; 3] = [16, 4, 2];
 ///     repeats: None,
 ///     answers: 1,
 /// };
-/// let found = search(&request, Watch { stopped: &|| false, observer: &|_| {} }).ok_or("not usable")?;
+/// let found = search(&request, Watch::silent(), None).ok_or("not usable")?;
 /// let best = found.answers.first().ok_or("none")?;
 /// // The best four-bar within these limits misses a square by a tenth of its radius.
 /// assert!(best.accepted && best.rms < 0.1);
 /// # Ok::<(), &str>(())
 /// ```
-pub fn search(request: &Request<'_>, watch: Watch<'_>) -> Option<DyadChainOutcome> {
+pub fn search(
+    request: &Request<'_>,
+    watch: Watch<'_>,
+    earlier: Option<&DyadChainState>,
+) -> Option<DyadChainOutcome> {
     if !request.is_usable() {
         return None;
     }
@@ -82,12 +88,19 @@ pub fn search(request: &Request<'_>, watch: Watch<'_>) -> Option<DyadChainOutcom
         next_stream: 0,
         done: DyadChainOutcome::default(),
     };
-    loop {
-        search.run_island();
+    if let Some(earlier) = earlier.and_then(|state| state.resumed(request.kinds, request.points.len())) {
+        search.resume(earlier);
         if search.is_over(&search.archive) {
             return Some(search.finished());
         }
     }
+    while search.run_island() {
+        (search.watch.keeper)(&search.state());
+        if search.is_over(&search.archive) {
+            break;
+        }
+    }
+    Some(search.finished())
 }
 
 /// A search between two rounds.
@@ -128,36 +141,59 @@ impl Search<'_> {
         });
     }
 
-    /// Runs an island to its end and keeps its ends.
-    fn run_island(&mut self) {
+    /// Goes on from the parts of an earlier state.
+    fn resume(&mut self, earlier: Resumed) {
+        let Resumed { archive, of_kinds, next_stream, done } = earlier;
+        (self.next_stream, self.done) = (next_stream, done);
+        // In the order in which they were kept.
+        self.archive.ends = archive;
+        of_kinds.into_iter().for_each(|end| self.add_to_kind(end));
+    }
+
+    fn state(&self) -> DyadChainState {
+        let archive: Vec<&End> = self.archive.ends.iter().collect();
+        let of_kinds: Vec<&End> = self.of_kinds.iter().flat_map(|pool| &pool.ends).collect();
+        DyadChainState::of(self.request.kinds, [&archive, &of_kinds], self.next_stream, &self.done)
+    }
+
+    fn add_to_kind(&mut self, end: End) {
+        if let Some(i) = self.request.kinds.iter().position(|kind| *kind == end.kind()) {
+            self.of_kinds[i].add(end);
+        }
+    }
+
+    /// Runs an island and keeps its ends; returns whether it came to its own end, before the search is over.
+    fn run_island(&mut self) -> bool {
         let from = self.done.evaluations;
         let mut island = self.founded();
         let (mut record, mut improved) = (island.best(), self.done.evaluations);
-        loop {
+        let is_whole = loop {
             self.tell(&island);
+            if self.is_over(&island) {
+                break false;
+            }
             let idle = self.done.evaluations - improved;
-            if self.is_over(&island) || island.ends.is_empty() || idle > PATIENCE.max(improved - from) {
-                break;
+            if island.ends.is_empty() || idle > PATIENCE.max(improved - from) {
+                break true;
             }
             let ends = self.hops(&island);
             self.keep(ends, &mut island);
             if island.best() < (1.0 - IMPROVED) * record {
                 (record, improved) = (island.best(), self.done.evaluations);
             }
-        }
+        };
         if !island.ends.is_empty() {
             self.done.islands.push(self.rms(island.best()));
         }
         island.ends.into_iter().for_each(|end| self.archive.add(end));
+        is_whole
     }
 
     /// Adds ends to an island, and to those of their kinds.
     fn keep(&mut self, ends: Vec<End>, island: &mut Pool) {
         self.done.ends += ends.len() as u64;
         for end in ends {
-            if let Some(i) = self.request.kinds.iter().position(|kind| *kind == end.kind()) {
-                self.of_kinds[i].add(end.clone());
-            }
+            self.add_to_kind(end.clone());
             island.add(end);
         }
     }
