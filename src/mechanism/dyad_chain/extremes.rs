@@ -41,8 +41,12 @@ pub fn extremes(of: &Proportions, dyad: usize, grid: &Grid) -> [Extreme; 2] {
         let at = |distance, re| Extreme { distance, at: Complex::new(re, 0.0) };
         return [at((1.0 - p).abs(), 1.0), at(1.0 + p, -1.0)];
     }
+    // With the neighbours of the first and the last phase.
     let distances = grid.distances_sq(of, dyad);
-    [1.0, -1.0].map(|sign| extreme(of, dyad, &distances, sign))
+    let mut around = [0.0; PHASES + 2];
+    around[1..=PHASES].copy_from_slice(&distances);
+    (around[0], around[PHASES + 1]) = (distances[PHASES - 1], distances[0]);
+    [extreme(of, dyad, &around, 1.0), extreme(of, dyad, &around, -1.0)]
 }
 
 /// Finds the least (`sign` +1) or the greatest (-1) distance from its squares on the grid.
@@ -50,31 +54,32 @@ pub fn extremes(of: &Proportions, dyad: usize, grid: &Grid) -> [Extreme; 2] {
 /// Two local extremes may be nearly equal: which of them is the extreme of the turn must not be left to the samples, or the
 /// distance would jump as the chain changes.
 #[inline(always)]
-fn extreme(of: &Proportions, dyad: usize, distances_sq: &[f64; PHASES], sign: f64) -> Extreme {
-    let at = |i: usize| sign * distances_sq[i % PHASES];
-    let mut vertices = [f64::INFINITY; PHASES];
-    let (mut best, mut least, mut most) = (f64::INFINITY, 0, 0);
+fn extreme(of: &Proportions, dyad: usize, around: &[f64; PHASES + 2], sign: f64) -> Extreme {
+    let mut vertices = [0.0; PHASES];
+    let [mut least, mut most, mut best] = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY];
     for i in 0..PHASES {
-        let (before, here, after) = (at(i + PHASES - 1), at(i), at(i + 1));
-        if here < at(least) {
-            least = i;
-        }
-        if here > at(most) {
-            most = i;
-        }
-        if here <= before && here < after {
-            // The vertex of the parabola through three samples.
-            let slope = after - before;
-            vertices[i] = here - slope * slope / (8.0 * (before - 2.0 * here + after));
-            best = best.min(vertices[i]);
+        let [before, here, after] = [sign * around[i], sign * around[i + 1], sign * around[i + 2]];
+        // The vertex of the parabola through three samples.
+        let slope = after - before;
+        let vertex = here - slope * slope / (8.0 * (before - 2.0 * here + after));
+        let is_local = here <= before && here < after;
+        vertices[i] = if is_local { vertex } else { f64::INFINITY };
+        least = if here < least { here } else { least };
+        most = if here > most { here } else { most };
+        best = if vertices[i] < best { vertices[i] } else { best };
+    }
+    let near = best + NEARLY_EQUAL * (most - least);
+    let mut found: Option<Extreme> = None;
+    for (i, vertex) in vertices.iter().enumerate() {
+        if *vertex <= near {
+            let other = refined(of, dyad, i, sign);
+            if found.is_none_or(|found| sign * other.distance < sign * found.distance) {
+                found = Some(other);
+            }
         }
     }
-    let first = refined(of, dyad, least, sign);
-    let near = best + NEARLY_EQUAL * (at(most) - at(least));
-    let others = (0..PHASES).filter(|i| *i != least && vertices[*i] <= near);
-    others
-        .map(|i| refined(of, dyad, i, sign))
-        .fold(first, |best, other| if sign * other.distance < sign * best.distance { other } else { best })
+    // A distance that does not change, or is not a number, has no local extreme.
+    found.unwrap_or_else(|| refined(of, dyad, 0, sign))
 }
 
 /// Refines the extreme next to a phase of the grid: `sign` +1 for a least distance, -1 for a greatest.
