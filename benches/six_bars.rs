@@ -291,7 +291,7 @@ fn random(options: &Options) {
     println!(
         "random six-bars: {recovered} of {} recovered, median time {:.2} s",
         options.curves,
-        median(&times)
+        median(&times).unwrap_or(f64::NAN)
     );
     assert!(recovered as f64 >= RECOVERED * options.curves as f64, "{recovered} of {}", options.curves);
 }
