@@ -4,7 +4,7 @@
 /// Points of a short fit; a target with at most half as many again is never thinned out.
 pub(super) const FEW: usize = 48;
 
-/// Chains drawn for an island. A fourth of them leaves the square at 0.024 of its radius instead of 0.014.
+/// Chains drawn for an island. With 6,000 the square's median of six seeds was 0.024 of its radius, with these 0.014.
 pub(super) const DRAWS: usize = 20_000;
 /// Draws that are correlated exactly with the target.
 pub(super) const PREFILTERED: usize = 3200;
