@@ -1,4 +1,4 @@
-//! Mechanisms: the four-bar, the slider-crank and its inversion, and the chain, their motion, the dyads that guide a body, their links as plates, the units of their lengths.
+//! Mechanisms: the four-bar, the slider-crank and its inversion, the chain and the dyad chains, their motion, the dyads that guide a body, their links as plates, the units of their lengths.
 //!
 //! | module | holds |
 //! |---|---|
@@ -6,6 +6,7 @@
 //! | [`any`] | a linkage of any kind, and the trait by which each kind tells its joints, rates, range and links |
 //! | [`chain`] | chains: compound mechanisms of a driven crank and stages, each attached to points that are already known, with the position in closed form |
 //! | [`dyad`] | poses of a body, and the dyads that guide it |
+//! | [`dyad_chain`] | dyad chains: a crank that turns fully, and dyads that hang on it one after the other: four-bars, six-bars, eight-bars |
 //! | [`effort`] | counter of linkage positions computed between two checks for a stop, in this crate's own tests; elsewhere it does nothing |
 //! | [`four_bar`] | planar four-bar linkages: parameters, position, motion, mobility, coupler curve and cognates |
 //! | [`inverted_slider_crank`] | planar inverted slider-cranks, whose coupler slides through a block at a fixed pivot |
@@ -19,6 +20,7 @@ pub mod analysis;
 pub mod any;
 pub mod chain;
 pub mod dyad;
+pub mod dyad_chain;
 pub(crate) mod effort;
 pub mod four_bar;
 pub mod inverted_slider_crank;
@@ -37,6 +39,7 @@ pub use any::{
 };
 pub use chain::{Chain, ChainBuilder};
 pub use dyad::{Dyad, Pose};
+pub use dyad_chain::{DyadChain, DyadChainKind};
 pub use four_bar::{
     AssemblyMode, Branch, Circuit, CouplerCurve, CouplerSide, FLAT_TOLERANCE, FourBar, InputArc, InputRange,
     Joints, LinkageError, LinkageType, MAX_MAGNITUDE, Mobility, NaturalCoordinates, OnCircuit, Position,

@@ -4,6 +4,7 @@ mod chain;
 mod cognates;
 #[path = "../common/coupler_points.rs"]
 mod coupler_points;
+mod dyad_chains;
 mod gradients;
 mod literature;
 mod loop_closure;

@@ -14,6 +14,7 @@ mod conflicts;
 mod costs;
 mod derivatives;
 mod deviation;
+mod dyad_chains;
 mod free_ranges;
 mod functions;
 mod invariance;

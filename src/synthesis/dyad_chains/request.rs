@@ -1,0 +1,84 @@
+//! Requests to the search for dyad chains: the path, the limits, the budget.
+
+use super::checkpoint::DyadChainState;
+use crate::mechanism::{Complex, DyadChainKind};
+
+/// The limits that an answer has to meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DyadChainLimits {
+    /// Least transmission angle of every dyad over the whole turn, radians in [0, pi/2).
+    pub transmission_min: f64,
+    /// Greatest distance between two joints of one body, P and pivots included; infinite for no limit, which answers of
+    /// enormous size then make use of.
+    pub longest_max: f64,
+    /// Greatest ratio of two distances between joints of one body, P left out.
+    pub link_ratio_max: f64,
+    /// Lower left and upper right corner of a box that holds all fixed pivots.
+    pub pivots_in: Option<[Complex; 2]>,
+}
+
+/// A path to draw with free timing, by a chain whose crank turns fully.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'a> {
+    /// The points in order. A closed path does not repeat its first point.
+    pub points: &'a [Complex],
+    /// Whether the path goes on from the last point to the first.
+    pub closed: bool,
+    /// The kinds of chains to search, e.g. [`DyadChainKind::SIX_BARS`].
+    pub kinds: &'a [DyadChainKind],
+    /// The limits.
+    pub limits: DyadChainLimits,
+    /// The seed of all random streams.
+    pub seed: u64,
+    /// Evaluations after which the search ends at the next round: trial steps of fits, and draws and assignments by what
+    /// they cost.
+    pub evaluations: u64,
+    /// The rms distance at which the search ends; zero for an exact answer only.
+    pub enough: f64,
+    /// Islands that have to reach the best answer before the search ends; `None` for all that the budget allows.
+    pub repeats: Option<usize>,
+    /// The most answers that are wanted.
+    pub answers: usize,
+}
+
+impl Request<'_> {
+    /// Returns whether every number can be used.
+    pub(super) fn is_usable(&self) -> bool {
+        let DyadChainLimits { transmission_min, longest_max, link_ratio_max, pivots_in } = self.limits;
+        let boxed = pivots_in.is_none_or(|[low, high]| low.re < high.re && low.im < high.im);
+        !self.kinds.is_empty()
+            && (0.0..1.5).contains(&transmission_min)
+            && longest_max > 0.0
+            && link_ratio_max > 1.0
+            && boxed
+    }
+}
+
+/// The progress of a search after a round.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DyadChainProgress {
+    /// Evaluations so far.
+    pub evaluations: u64,
+    /// Islands that have ended.
+    pub islands: usize,
+    /// The best rms distance so far, hinges of the limits included; infinite before the first answer.
+    pub best_rms: f64,
+}
+
+/// The caller's side of a search that is running.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Whether to stop: asked between rounds and between the stages of an island's start.
+    pub stopped: &'a (dyn Fn() -> bool + Sync),
+    /// Told after each round.
+    pub observer: &'a (dyn Fn(&DyadChainProgress) + Sync),
+    /// Given the state after each island, from which a search can be resumed.
+    pub keeper: &'a (dyn Fn(&DyadChainState) + Sync),
+}
+
+impl Watch<'_> {
+    /// Returns the watch of a caller who neither stops a search nor looks at it.
+    pub fn silent() -> Self {
+        Watch { stopped: &|| false, observer: &|_| {}, keeper: &|_| {} }
+    }
+}
