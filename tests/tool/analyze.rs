@@ -298,7 +298,7 @@ fn linkages_with_a_slider_are_analysed_with_every_joint_and_the_slider() {
         assert!(refused.code == 2 && refused.stderr.contains("for four-bars"), "{}", refused.stderr);
         for command in [
             &["cognates", "it.toml", "--svg", "it.svg"][..],
-            &["snap", "it.toml", "--grid", "1"],
+            &["snap", "it.toml", "--grid", "1", "--keep", "c"],
             &["compare", "it.toml", "it.toml"],
             &["synth", "it.toml"],
         ] {
@@ -308,6 +308,10 @@ fn linkages_with_a_slider_are_analysed_with_every_joint_and_the_slider() {
             let plain = plain.iter().any(|words| refused.stderr.contains(words));
             assert!(plain && !refused.stderr.contains("panicked"), "{command:?}: {}", refused.stderr);
         }
+        // Its hole distances are brought to a stock.
+        let snapped = linkwright(folder.path(), &["snap", "it.toml", "--grid", "0.5"]);
+        assert_eq!(snapped.code, 0, "{} {}", snapped.stdout, snapped.stderr);
+        assert!(!snapped.stdout.contains("NaN") && snapped.stdout.contains("stock"), "{}", snapped.stdout);
         // A slider-crank has one cognate, an inverted one none.
         let cognates = linkwright(folder.path(), &["cognates", "it.toml"]);
         if kind == "slider-crank" {

@@ -11,7 +11,7 @@ use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord};
 use crate::synthesis::Context;
 use crate::synthesis::constants::Effort;
-use crate::synthesis::constants::sliders::{DRAWS, HOP, HOPS, NEARLY, PROMISING, TURNING};
+use crate::synthesis::constants::sliders::{HOP, HOPS, NEARLY, PROMISING, TURNING};
 use crate::task::forms::slider::fit::{Angles, SliderFit, settle};
 use crate::task::forms::slider::limits::Limited;
 use crate::task::forms::slider::shape::{Closure, FRAME, OFFSET, SHAPE, SliderShape};
@@ -189,16 +189,17 @@ impl<'a> Fits<'a> {
         self.target.outputs.as_ref().is_some_and(|outputs| outputs.kind == Output::Place)
     }
 
-    /// Draws the starts of a path with their misfits.
+    /// Draws `count` starts of a path, with the misfits of those that can be laid on it.
     pub(super) fn drawn(
         &mut self,
         (kind, limits): (LoopKind, &Limited),
+        count: usize,
         draws: &mut Stream,
     ) -> Vec<(f64, Start)> {
         let (problem, target) = (self.context.problem, self.target);
         let is_free = matches!(problem.task().timing(), Timing::Free);
         let mut drawn: Vec<(f64, Start)> = Vec::new();
-        for _ in 0..DRAWS {
+        for _ in 0..count {
             if self.is_at_its_end() {
                 break;
             }

@@ -19,8 +19,8 @@ mod starts;
 
 use super::Context;
 use super::constants::sliders::{
-    APART, BATCH, FAMILY_BATCHES, HOP_EVERY, HOP_FROM, KEPT, LEAST_POLISHED, LONG, LONG_FIT, POLISH, SHORT,
-    SHORT_FIT, STOPPING,
+    APART, BATCH, DRAWS, FAMILY_BATCHES, HOP_EVERY, HOP_FROM, KEPT, LEAST_POLISHED, LONG, LONG_FIT, POLISH,
+    SHORT, SHORT_FIT, STOPPING,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, drive, in_parallel};
 use super::family::{climb, freedom_within, one_is_enough};
@@ -40,6 +40,7 @@ use guided::Guided;
 use output_starts::output_starts;
 use rayon::prelude::*;
 use starts::{Start, Target};
+use std::slice;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The streams of the rounds begin here, so that they differ from those of the four-bars.
@@ -164,6 +165,12 @@ impl<'a> Sliders<'a> {
         let mut draws = stream(problem.spec().solve.seed, STREAMS + index);
         let (kind, limits) = &self.kinds[index as usize % self.kinds.len()];
         let first = (index as usize) < self.kinds.len();
+        // A glimpse of a path draws each kind in every round: the shapes that resemble it most tell which.
+        let drawn_kinds = if self.glimpse.is_some() {
+            &self.kinds[..]
+        } else {
+            slice::from_ref(&self.kinds[index as usize % self.kinds.len()])
+        };
         let known: Vec<Start> = if hops(index) { self.known(problem, *kind).collect() } else { Vec::new() };
         let mut drawn: Vec<(f64, Start)> = match (&self.guided, &target.outputs) {
             (_, Some(outputs)) => {
@@ -171,15 +178,23 @@ impl<'a> Sliders<'a> {
                 fits.glanced_outputs(limits, starts)
             }
             (Some(guided), None) => fits.glanced(limits, guided.starts(target, *kind, first, &mut draws)),
-            (None, None) if known.is_empty() => fits.drawn((*kind, limits), &mut draws),
+            (None, None) if known.is_empty() => {
+                let share = DRAWS / drawn_kinds.len();
+                let of_kind =
+                    |(kind, limits): &(LoopKind, Limited)| fits.drawn((*kind, limits), share, &mut draws);
+                drawn_kinds.iter().flat_map(of_kind).collect()
+            }
             (None, None) => fits.hopped(limits, &known, &mut draws),
+        };
+        let limits_of = |start: &Start| {
+            self.kinds.iter().find(|(kind, _)| *kind == start.kind).map_or(limits, |(_, limits)| limits)
         };
         outcome.draws = fits.used;
         by_merit(&mut drawn, SHORT);
         let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
         let mut nearly: Option<Start> = None;
         for (_, start) in drawn {
-            let Some((merit, end)) = fits.run(limits, start, SHORT_FIT) else { continue };
+            let Some((merit, end)) = fits.run(limits_of(&start), start, SHORT_FIT) else { continue };
             if fits.is_nearly_exact(merit) {
                 nearly = Some(end);
                 break;
@@ -190,7 +205,7 @@ impl<'a> Sliders<'a> {
         let fitted = distinct(fitted, LONG);
         let judging = context.judging();
         for start in nearly.into_iter().chain(fitted.into_iter().map(|(_, start)| start)) {
-            let Some((_, end)) = fits.run(limits, start, LONG_FIT) else { continue };
+            let Some((_, end)) = fits.run(limits_of(&start), start, LONG_FIT) else { continue };
             if !judging.may_go_on() {
                 break;
             }

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Over a turn, or over the crank angles between the first and the last position, the extremes of each joint are found from
-//! equidistant samples by Newton steps; the derivative of an extreme is that of the joint at its extreme position (Danskin
+//! equidistant samples by the secant method; the derivative of an extreme is that of the joint at its extreme position (Danskin
 //! 1967). The extent's inequalities are as those of four-bars: with least coordinates m of all joints towards the inside of the
 //! four sides, w = -(m_1 + m_3), h = -(m_2 + m_4), L - sqrt(w^2 + h^2) >= 0, and the same with each other joint on a side.
 
@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 
 /// The number of intervals between samples of a motion.
 const INTERVALS: usize = 96;
-/// Newton steps towards an extreme, with the curvature of the samples.
+/// Steps of the secant method towards an extreme, the first one with the curvature of the samples.
 const STEPS: usize = 4;
 /// The joints C, D and P, which move.
 const MOVING: usize = 3;
@@ -297,13 +297,22 @@ impl<'a> Samples<'a> {
         // The samples of a whole turn go on beyond its ends.
         let beside = |by: isize| value((around as isize + by).rem_euclid(INTERVALS as isize) as usize);
         let next = if around + 1 > INTERVALS { beside(1) } else { value(around + 1) };
-        let curvature = (beside(-1) - 2.0 * value(around) + next) / (self.step * self.step);
-        if curvature > 0.0 {
-            for _ in 0..STEPS {
-                let next = (angle - self.slope(position, joint, side)? / curvature).clamp(low, high);
-                let Some(there) = self.position(next) else { break };
-                (angle, position) = (next, there);
+        let mut curvature = (beside(-1) - 2.0 * value(around) + next) / (self.step * self.step);
+        let mut before: Option<[f64; 2]> = None;
+        for _ in 0..STEPS {
+            let slope = self.slope(position, joint, side)?;
+            if let Some([angle_before, slope_before]) = before
+                && angle != angle_before
+            {
+                curvature = (slope - slope_before) / (angle - angle_before);
             }
+            if curvature.is_nan() || curvature <= 0.0 {
+                break;
+            }
+            before = Some([angle, slope]);
+            let next = (angle - slope / curvature).clamp(low, high);
+            let Some(there) = self.position(next) else { break };
+            (angle, position) = (next, there);
         }
         let miss = self.shape.miss(position);
         let Joint { place, by_shape, by_angles } = &joints(self.shape, position)[joint];
