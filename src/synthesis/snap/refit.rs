@@ -218,8 +218,8 @@ fn fit_slider(
     (found, used)
 }
 
-/// Returns a linkage with a slider with its fixed lengths at exactly their fixed values: the ground by moving B along it (A if
-/// B is fixed), d and e by moving P. `None` if they are off by more than the rounding of a fit.
+/// Returns a linkage with a slider with its fixed pivots and lengths at exactly their fixed values: the ground by moving B along
+/// it (A if B is fixed), d and e by moving P. `None` if they are off by more than the rounding of a fit.
 fn slider_to_the_digit(linkage: &OneLoop, fixed: &Fixed) -> Option<OneLoop> {
     if !are_near(linkage, fixed) {
         return None;
@@ -237,19 +237,18 @@ fn slider_to_the_digit(linkage: &OneLoop, fixed: &Fixed) -> Option<OneLoop> {
         _ => z,
     };
     let (crank, assembly) = (fixed.get(Length::A).unwrap_or(linkage.crank()), linkage.assembly());
+    let pivot = fixed.crank_pivot.map_or(linkage.crank_pivot(), point);
     match linkage {
         OneLoop::FourBar(_) => None,
         OneLoop::SliderCrank(l) => {
             let coupler = fixed.get(Length::B).unwrap_or(l.coupler());
             let line = (l.line_point(), l.line_direction().arg());
             let offset = offset(Some(coupler));
-            let made =
-                SliderCrank::from_parts(linkage.crank_pivot(), [crank, coupler], line, offset, assembly)
-                    .ok()?;
+            let made = SliderCrank::from_parts(pivot, [crank, coupler], line, offset, assembly).ok()?;
             Some(OneLoop::SliderCrank(made))
         }
         OneLoop::InvertedSliderCrank(l) => {
-            let mut pivots = [linkage.crank_pivot(), l.block_pivot()];
+            let mut pivots = [pivot, fixed.follower_pivot.map_or(l.block_pivot(), point)];
             let along = pivots[1] - pivots[0];
             let (ground, angle) = (fixed.get(Length::Ground), fixed.ground_angle_deg);
             let both = fixed.crank_pivot.is_some() && fixed.follower_pivot.is_some();
