@@ -314,20 +314,28 @@ fn main() {
             (kind, target(kind, Points::Closed, &mut stream(seed, 1000 + case as u64)))
         };
         let mixed = || cases(count.unwrap_or(40));
-        row("mixed, their own kind alone", mixed().map(each), Points::Closed, &[], show);
-        row("mixed, all kinds", mixed().map(each), Points::Closed, &LoopKind::ALL, show);
+        let alone = row("mixed, their own kind alone", mixed().map(each), Points::Closed, &[], show);
+        let all = row("mixed, all kinds", mixed().map(each), Points::Closed, &LoopKind::ALL, show);
+        let ratios: Vec<f64> = all.iter().zip(&alone).map(|(all, alone)| all / alone).collect();
+        println!(
+            "  all kinds over the own kind, target by target: median {:.2}, largest {:.2}; in sum {:.2}",
+            median(&ratios).unwrap_or(f64::NAN),
+            ratios.iter().copied().fold(f64::NAN, f64::max),
+            all.iter().sum::<f64>() / alone.iter().sum::<f64>()
+        );
     }
     assert!(seen > 0, "no class has {filter} in its name");
 }
 
-/// Searches for each target, among `mechanism` or, if that is empty, among its own kind alone, and prints a row.
+/// Searches for each target, among `mechanism` or, if that is empty, among its own kind alone, prints a row, and returns the
+/// milliseconds of each.
 fn row(
     class: &str,
     each: impl Iterator<Item = (LoopKind, Asked)>,
     of: Points,
     mechanism: &[LoopKind],
     show: bool,
-) {
+) -> Vec<f64> {
     let (mut recovered, mut all, mut times) = (0, 0, Vec::new());
     for (case, (kind, asked)) in each.enumerate() {
         let own = [kind];
@@ -340,6 +348,7 @@ fn row(
             println!("  {case}: {error:.2e} in {ms:.0} ms, {}", asked.linkage);
         }
     }
+    let in_order = times.clone();
     times.sort_by(f64::total_cmp);
     let tenth = times.get(times.len() * 9 / 10).copied().unwrap_or(f64::NAN);
     println!(
@@ -349,4 +358,5 @@ fn row(
         tenth,
         times.last().copied().unwrap_or(f64::NAN)
     );
+    in_order
 }

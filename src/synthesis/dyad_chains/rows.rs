@@ -259,7 +259,8 @@ mod tests {
     fn moved(shape: Shape, at: Placement, unknown: usize, step: f64) -> (Shape, Placement) {
         let (mut shape, mut at) = (shape, at);
         let count = shape.count();
-        let vector = |i: usize| if i.is_multiple_of(2) { Complex::new(step, 0.0) } else { Complex::new(0.0, step) };
+        let vector =
+            |i: usize| if i.is_multiple_of(2) { Complex::new(step, 0.0) } else { Complex::new(0.0, step) };
         match unknown.checked_sub(count) {
             None => shape.parameters[unknown] += step,
             Some(i @ 0..2) => at.origin += vector(i),
