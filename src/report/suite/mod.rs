@@ -1,7 +1,7 @@
 //! A suite for the terminal and as Markdown: the same tables in two formats.
 //!
 //! Paths, whose answers are compared by a sum of squares, have the tables of this file; motions, whose objective counts
-//! angles too, and functions, whose errors are of one output alone, have those of [`sections`].
+//! angles too, and functions, whose errors are of one output alone, have those of the module `sections`.
 
 mod sections;
 
