@@ -323,7 +323,7 @@ def build(
 
 
 def snap(
-    linkage: OfFourBars,
+    linkage: Subject,
     *,
     grid: float | None = None,
     lengths: Any = None,
@@ -339,7 +339,7 @@ def snap(
         linkage: a candidate, a result (its first candidate), a linkage (measured on its own curve) or a path.
         grid: the stock: multiples of this; or `lengths`: these lengths, shape (n,); or `pitches`: the lengths in this text
             file, one a line or separated by commas. One of the three.
-        snap: the hole distances that are snapped; where silent, ``ground, a, b, c, d, e``.
+        snap: the hole distances that are snapped; where silent, those of ``ground, a, b, c, d, e`` that its kind has.
         keep: what stays exactly as it is: ``ground, a, b, c, d, e, A, B, ground_angle_deg``.
         set: dimensions with values of their own.
 

@@ -171,7 +171,8 @@ impl<'a> Sliders<'a> {
         } else {
             slice::from_ref(&self.kinds[index as usize % self.kinds.len()])
         };
-        let known: Vec<Start> = if hops(index) { self.known(problem, *kind).collect() } else { Vec::new() };
+        let known: Vec<Start> =
+            if self.hops(index) { self.known(problem, *kind).collect() } else { Vec::new() };
         let mut drawn: Vec<(f64, Start)> = match (&self.guided, &target.outputs) {
             (_, Some(outputs)) => {
                 let starts = output_starts(problem, (target, outputs), (*kind, limits), first, &mut draws);
@@ -219,6 +220,12 @@ impl<'a> Sliders<'a> {
         }
         outcome.evaluations = context.cost(fits.used);
         outcome
+    }
+
+    /// Returns whether a round begins near known answers: some of those of a path after the first batch.
+    fn hops(&self, index: u64) -> bool {
+        let is_path = self.guided.is_none() && self.target.outputs.is_none();
+        is_path && index >= BATCH && index % HOP_EVERY == HOP_EVERY - 1
     }
 
     /// Returns the best known candidates of a kind, as starts.
@@ -269,11 +276,6 @@ impl<'a> Sliders<'a> {
     }
 }
 
-/// Returns whether a round begins near known answers.
-fn hops(index: u64) -> bool {
-    index >= BATCH && index % HOP_EVERY == HOP_EVERY - 1
-}
-
 /// Returns the first `most` starts, in the order of their merits, that lie apart from those before them: two that run into one
 /// another would come to the same end.
 fn distinct(starts: Vec<(f64, Start)>, most: usize) -> Vec<(f64, Start)> {
@@ -319,7 +321,7 @@ impl Strategy for Sliders<'_> {
         self.at.batch += 1;
         for (index, outcome) in (begin..).zip(batch) {
             // That an answer is found again from itself says nothing of others.
-            let is_independent = !hops(index);
+            let is_independent = !self.hops(index);
             self.at.draws += outcome.draws;
             self.at.evaluations += outcome.evaluations;
             for candidate in outcome.found {
