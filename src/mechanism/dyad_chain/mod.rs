@@ -61,7 +61,7 @@ impl Placement {
 pub struct DyadChain {
     /// Kind, assembly and parameters.
     pub shape: Shape,
-    /// Where it is, and where P is on its link.
+    /// The similarity that takes it to its place, and the place of P on its link.
     pub placement: Placement,
 }
 

@@ -1,14 +1,17 @@
-//! Projects phases onto the nearest sequence in order, by pooling adjacent violators (Ayer et al. 1955).
+//! Projects phases onto the nearest sequence in order, by isotonic regression ([`Ordered`]).
 //!
 //! Closed targets are cut at their largest gap, so that the cut moves no phase.
 
+use crate::numbers::optimise::ordered::Ordered;
 use std::f64::consts::TAU;
 
 /// Buffers of the projection.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Order {
-    /// Sum and number of the phases of each pool.
-    pools: Vec<(f64, u32)>,
+    ordered: Ordered,
+    gaps: Vec<f64>,
+    moves: Vec<f64>,
+    weights: Vec<f64>,
 }
 
 impl Order {
@@ -32,25 +35,7 @@ impl Order {
             phases[wrapped..].iter_mut().for_each(|phase| *phase += TAU);
         }
         if phases.windows(2).any(|pair| pair[1] < pair[0]) {
-            self.pools.clear();
-            for phase in phases.iter() {
-                let mut pool = (*phase, 1);
-                while let Some(&(sum, count)) = self.pools.last()
-                    && sum * f64::from(pool.1) > pool.0 * f64::from(count)
-                {
-                    pool = (pool.0 + sum, pool.1 + count);
-                    self.pools.pop();
-                }
-                self.pools.push(pool);
-            }
-            let mut at = 0;
-            for (sum, count) in &self.pools {
-                let mean = sum / f64::from(*count);
-                for phase in &mut phases[at..at + *count as usize] {
-                    *phase = mean;
-                }
-                at += *count as usize;
-            }
+            self.pool(phases);
         }
         let most = phases[0] + TAU;
         for phase in phases.iter_mut().rev() {
@@ -63,6 +48,27 @@ impl Order {
             phases[wrapped..].iter_mut().for_each(|phase| *phase -= TAU);
         }
         phases.rotate_right((cut + 1) % n);
+    }
+
+    /// Replaces phases by the nearest sequence that does not fall, from the first to the last.
+    fn pool(&mut self, phases: &mut [f64]) {
+        let n = phases.len();
+        if self.weights.len() != n {
+            (self.ordered, self.weights) = (Ordered::new(n), vec![1.0; n]);
+        }
+        self.gaps.clear();
+        self.gaps.extend(phases.windows(2).map(|pair| pair[1] - pair[0]));
+        // The last point and the first one are not neighbours.
+        self.gaps.push(f64::INFINITY);
+        self.moves.clear();
+        self.moves.resize(n, 0.0);
+        self.ordered.pool(&self.gaps, &mut self.moves, &self.weights);
+        let mut least = f64::NEG_INFINITY;
+        for (phase, by) in phases.iter_mut().zip(&self.moves) {
+            // Those of a pool differ by rounding.
+            least = least.max(*phase + by);
+            *phase = least;
+        }
     }
 }
 

@@ -13,7 +13,7 @@ use super::target::{Target, Variant};
 use crate::numbers::arithmetic::streams::{Stream, below, normal, uniform, unit};
 use std::f64::consts::TAU;
 
-/// What all fits share.
+/// The target and the limits, which all fits share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setup<'a> {
     pub(super) target: &'a Target,
