@@ -4,19 +4,21 @@
 //! [`slider`](super::slider). A four-bar's numbers are those of [`FourBar`], to the last digit.
 
 mod keys;
+mod kind;
+mod mobility;
 
 pub use keys::{LinkageKeys, NoLinkage};
+pub use kind::LoopKind;
+pub use mobility::LoopMobility;
 
 use super::any::Mechanism;
 use super::four_bar::coupler_curve::SingleLoop;
 use super::four_bar::transmission::TransmissionExtremes;
 use super::{
-    AssemblyMode, Branch, Circuit, Complex, FourBar, InputArc, InputRange, InvertedSliderCrank,
-    InvertedSliderCrankParameters, Joints, LinkageError, LinkageType, NaturalCoordinates, OnCircuit,
-    SliderCrank, SliderCrankParameters, SliderJoints, SliderLinkage, SliderPosition, dot, least_and_greatest,
-    xy,
+    AssemblyMode, Complex, FourBar, InputArc, InvertedSliderCrank, InvertedSliderCrankParameters, Joints,
+    LinkageError, LinkageType, NaturalCoordinates, OnCircuit, SliderCrank, SliderCrankParameters,
+    SliderJoints, SliderLinkage, SliderPosition, dot, least_and_greatest, xy,
 };
-use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A linkage of one loop.
@@ -28,40 +30,6 @@ pub enum OneLoop {
     SliderCrank(SliderCrank),
     /// An inverted slider-crank.
     InvertedSliderCrank(InvertedSliderCrank),
-}
-
-/// The kinds of linkages of one loop.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "kebab-case")]
-pub enum LoopKind {
-    /// Four pins.
-    FourBar,
-    /// Three pins and a block on a fixed line.
-    SliderCrank,
-    /// Three pins and a block at a fixed pivot, through which the coupler slides.
-    InvertedSliderCrank,
-}
-
-impl LoopKind {
-    /// Every kind.
-    pub const ALL: [LoopKind; 3] = [LoopKind::FourBar, LoopKind::SliderCrank, LoopKind::InvertedSliderCrank];
-
-    /// Returns the name in files: `slider-crank`.
-    pub fn name(self) -> &'static str {
-        match self {
-            LoopKind::FourBar => "four-bar",
-            LoopKind::SliderCrank => "slider-crank",
-            LoopKind::InvertedSliderCrank => "inverted-slider-crank",
-        }
-    }
-}
-
-impl std::fmt::Display for LoopKind {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name())
-    }
 }
 
 /// A position of a linkage of one loop.
@@ -89,37 +57,6 @@ impl From<&Joints> for LoopJoints {
 impl From<&LoopJoints> for LoopJoints {
     fn from(at: &LoopJoints) -> Self {
         *at
-    }
-}
-
-/// Mobility of a linkage of one loop.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LoopMobility {
-    /// The type of a four-bar; `None` of other kinds, or if the links cannot be assembled.
-    pub linkage_type: Option<LinkageType>,
-    /// The length that is at least zero where a link turns fully: p + q - s - l of a four-bar, of other kinds the margin of
-    /// the crank's own turn.
-    pub margin: f64,
-    /// The range of the input.
-    pub input: InputRange,
-    /// Whether the two circuits of a full turn meet in a flat position.
-    pub change_point: bool,
-}
-
-impl LoopMobility {
-    /// Returns whether the crank turns fully, so that a motor can drive it; never of a change point among four-bars.
-    pub fn input_turns_fully(&self) -> bool {
-        self.linkage_type.map_or(self.input == InputRange::Full, LinkageType::input_turns_fully)
-    }
-
-    /// Returns the arc on which a circuit's input moves; `None` if it turns fully or cannot move.
-    pub fn arc(&self, circuit: Circuit) -> Option<InputArc> {
-        self.input.arc(circuit)
-    }
-
-    /// Returns the branch of a position that closes the loop.
-    pub fn branch(&self, crank_angle: f64, assembly: AssemblyMode) -> Branch {
-        self.input.branch(self.change_point, crank_angle, assembly)
     }
 }
 
