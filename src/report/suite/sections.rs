@@ -8,14 +8,16 @@ use crate::report::text::clean;
 
 /// The number of digits of a motion's objectives in a table.
 const DIGITS_OF_OBJECTIVES: usize = 8;
-/// Headings and meanings of the columns.
+/// The heading of the motions.
 const MOTIONS: &str = "Motions: poses of a body";
+/// The meaning of the columns of motions, of functions and of functions with places.
 const WHAT_OF_MOTIONS: &str = "objective: the least one of all seeds, the sum over the poses of weight times (squared \
     distance of the place + (angle_weight times the error of the angle in radians) squared); median: of the accepted \
     answers of all seeds; hits: seeds whose answer is accepted and reaches the best known objective within 1e-6 of it \
     (where that is 0: up to rounding); rms, rms deg: the root of the mean squared distance of the places and error of \
     the angle, in degrees, of the best answer; poses: how many, with those that are a place alone; evaluations: of the \
     objective, median.";
+/// The headings of functions.
 const FUNCTIONS: &str = "Functions: an angle turned into another";
 const WHAT_OF_FUNCTIONS: &str = "objective: the least one of all seeds, the sum over the pairs of weight times squared error \
     of the follower's angle, in degrees squared; median: of the accepted answers of all seeds; hits: seeds whose answer is \
@@ -72,29 +74,21 @@ pub fn sections<'a>(
     motions: Vec<&'a ProblemResult>,
     functions: Vec<&'a ProblemResult>,
 ) -> impl Iterator<Item = Section<'a>> {
-    let motions = Section {
-        problems: motions,
-        heading: MOTIONS,
-        meaning: WHAT_OF_MOTIONS,
-        nouns: "poses",
-        shown: Errors { of_places: true, of_angles: true },
-    };
+    let section =
+        |problems, [heading, meaning, nouns]: [&'static str; 3], [of_places, of_angles]: [bool; 2]| Section {
+            problems,
+            heading,
+            meaning,
+            nouns,
+            shown: Errors { of_places, of_angles },
+        };
     let (places, functions) = functions.into_iter().partition(|problem| problem.is_of_places());
-    let functions = Section {
-        problems: functions,
-        heading: FUNCTIONS,
-        meaning: WHAT_OF_FUNCTIONS,
-        nouns: "pairs",
-        shown: Errors { of_places: false, of_angles: true },
-    };
-    let places = Section {
-        problems: places,
-        heading: PLACES,
-        meaning: WHAT_OF_PLACES,
-        nouns: "pairs",
-        shown: Errors { of_places: true, of_angles: false },
-    };
-    [motions, functions, places].into_iter().filter(|section| !section.problems.is_empty())
+    let sections = [
+        section(motions, [MOTIONS, WHAT_OF_MOTIONS, "poses"], [true, true]),
+        section(functions, [FUNCTIONS, WHAT_OF_FUNCTIONS, "pairs"], [false, true]),
+        section(places, [PLACES, WHAT_OF_PLACES, "pairs"], [true, false]),
+    ];
+    sections.into_iter().filter(|section| !section.problems.is_empty())
 }
 
 /// Returns the table of the answers of motions or of functions, with the errors that they have.
