@@ -1,16 +1,9 @@
 //! Rows of the extent: the limit less the diagonal of the box of A, B, C, D and P over the motion.
 //!
-//! With least coordinates u of all joints in the directions +x, +y, -x, -y the box is w = -(u_1 + u_3) wide and
-//! h = -(u_2 + u_4) high, and
-//!
-//! ```text
-//! g = L - sqrt(w^2 + h^2),   dg = (w (du_1 + du_3) + h (du_2 + du_4)) / sqrt(w^2 + h^2),
-//! ```
-//!
-//! with du the derivative of the extreme joint at its extreme position (Danskin 1967). Each side is the extreme of five
-//! joints. One row has the extreme joint on every side; for each side and each of the other four joints there is one with
-//! that joint in its place: never tighter, and as tight where two joints lie on that side.
+//! There is a row for each diagonal of the box ([`diagonals`]); du is the derivative of the extreme joint at its extreme
+//! position (Danskin 1967).
 
+use super::diagonal::{Diagonal, diagonals};
 use super::swept::Swept;
 use super::{At, MOST_TURNS, Row, RowKind, Side, Turn};
 use crate::task::forms::design_space::SHAPE;
@@ -36,29 +29,17 @@ pub(super) fn rows(at: &At<'_>, each: &mut dyn FnMut(&Row)) {
         (0..1 + Side::ALL.len() * (JOINTS - 1)).for_each(|_| each(&lacking));
         return;
     };
-    let extreme = reaches.map(|joints| {
-        let reach = |joint: &usize| joints[*joint].value;
-        (0..JOINTS).min_by(|i, j| reach(i).total_cmp(&reach(j))).unwrap_or(0)
+    let least = reaches.map(|joints| joints.map(|reach| reach.value));
+    diagonals(least.each_ref().map(|joints| &joints[..]), &mut |diagonal| {
+        each(&row(at, kind, most, &reaches, diagonal));
     });
-    let sides =
-        [reaches[0][extreme[0]], reaches[1][extreme[1]], reaches[2][extreme[2]], reaches[3][extreme[3]]];
-    each(&diagonal(at, kind, most, &sides));
-    for (side, (joints, extreme)) in reaches.iter().zip(extreme).enumerate() {
-        for (_, reach) in joints.iter().enumerate().filter(|(joint, _)| *joint != extreme) {
-            let mut others = sides;
-            others[side] = *reach;
-            each(&diagonal(at, kind, most, &others));
-        }
-    }
 }
 
-/// Returns the row with these sides of the box.
-fn diagonal(at: &At<'_>, kind: RowKind, most: f64, sides: &[Reach; 4]) -> Row {
-    let (width, height) = (-(sides[0].value + sides[2].value), -(sides[1].value + sides[3].value));
-    let long = width.hypot(height);
-    let mut row = Row::still(kind, most - at.margin() - long, [0.0; SHAPE]);
-    for (i, side) in sides.iter().enumerate() {
-        let factor = if i % 2 == 0 { width } else { height } / long.max(f64::MIN_POSITIVE);
+/// Returns the row of a diagonal.
+fn row(at: &At<'_>, kind: RowKind, most: f64, reaches: &[[Reach; JOINTS]; 4], diagonal: &Diagonal) -> Row {
+    let mut row = Row::still(kind, most - at.margin() - diagonal.length, [0.0; SHAPE]);
+    for (i, (joint, factor)) in diagonal.joints.into_iter().zip(diagonal.factors).enumerate() {
+        let side = &reaches[i][joint];
         for (sum, by) in row.shape.iter_mut().zip(&side.shape) {
             *sum += factor * by;
         }

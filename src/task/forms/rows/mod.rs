@@ -18,6 +18,7 @@
 
 mod boxes;
 mod derived;
+pub(in crate::task::forms) mod diagonal;
 mod extent_max;
 mod footprint_in;
 mod link_ratio;

@@ -8,15 +8,15 @@
 //!
 //! Over a turn, or over the crank angles between the first and the last position, the extremes of each joint are found from
 //! equidistant samples by the secant method; the derivative of an extreme is that of the joint at its extreme position (Danskin
-//! 1967). The extent's inequalities are as those of four-bars: with least coordinates m of all joints towards the inside of the
-//! four sides, w = -(m_1 + m_3), h = -(m_2 + m_4), L - sqrt(w^2 + h^2) >= 0, and the same with each other joint on a side.
+//! 1967). The extent has an inequality for each diagonal of the box ([`diagonals`]).
 
 use super::limits::{Bar, MARGIN};
 use super::shape::{Closure, SHAPE, SliderShape};
 use crate::mechanism::four_bar::mobility::ways_round;
 use crate::mechanism::{Complex, turned};
-use crate::numbers::optimise::levenberg_marquardt::MOST_OWN;
 use crate::task::forms::rows::Side;
+use crate::task::forms::rows::diagonal::{Diagonal, diagonals};
+use crate::task::forms::torus::turned_range;
 use std::f64::consts::TAU;
 
 /// The number of intervals between samples of a motion.
@@ -77,48 +77,31 @@ impl BoxLimits {
             for (side, limit) in Side::ALL.into_iter().zip(limits) {
                 for reach in &reaches[side.index()][..count] {
                     let value = reach.value - side.sign() * limit - MARGIN;
-                    each(Bar { at: own(&[reach.at]), ..Bar::still(value, reach.by_shape) });
+                    let mut bar = Bar::still(value, reach.by_shape);
+                    bar.at[0] = reach.at;
+                    each(bar);
                 }
             }
         }
         let Some(most) = self.extent else { return };
-        let extreme = reaches.map(|joints| {
-            let least = |i: &usize, k: &usize| joints[*i].value.total_cmp(&joints[*k].value);
-            (0..count).min_by(least).unwrap_or(0)
+        let least = reaches.map(|joints| joints.map(|reach| reach.value));
+        diagonals(least.each_ref().map(|joints| &joints[..count]), &mut |diagonal| {
+            each(bar(most, &reaches, diagonal));
         });
-        let sides: [Reach; 4] = std::array::from_fn(|i| reaches[i][extreme[i]]);
-        each(diagonal(most, &sides));
-        for (side, (joints, extreme)) in reaches.iter().zip(extreme).enumerate() {
-            for (_, reach) in joints.iter().enumerate().take(count).filter(|(joint, _)| *joint != extreme) {
-                let mut others = sides;
-                others[side] = *reach;
-                each(diagonal(most, &others));
-            }
-        }
     }
 }
 
-/// Returns the positions on which an inequality depends.
-fn own(reaches: &[Option<(usize, [f64; 2])>]) -> [Option<(usize, [f64; 2])>; MOST_OWN] {
-    let mut own = [None; MOST_OWN];
-    own[..reaches.len()].copy_from_slice(reaches);
-    own
-}
-
-/// Returns the inequality of the diagonal with these sides of the box.
-fn diagonal(most: f64, sides: &[Reach; 4]) -> Bar {
-    let (width, height) = (-(sides[0].value + sides[2].value), -(sides[1].value + sides[3].value));
-    let long = width.hypot(height);
-    let mut by_shape = [0.0; SHAPE];
-    let mut at = [None; MOST_OWN];
-    for (i, side) in sides.iter().enumerate() {
-        let factor = if i % 2 == 0 { width } else { height } / long.max(f64::MIN_POSITIVE);
-        for (sum, by) in by_shape.iter_mut().zip(side.by_shape) {
+/// Returns the inequality of a diagonal.
+fn bar(most: f64, reaches: &[[Reach; JOINTS]; 4], diagonal: &Diagonal) -> Bar {
+    let mut bar = Bar::still(most - diagonal.length - MARGIN, [0.0; SHAPE]);
+    for (i, (joint, factor)) in diagonal.joints.into_iter().zip(diagonal.factors).enumerate() {
+        let side = &reaches[i][joint];
+        for (sum, by) in bar.by_shape.iter_mut().zip(side.by_shape) {
             *sum += factor * by;
         }
-        at[i] = side.at.map(|(j, by)| (j, by.map(|by| factor * by)));
+        bar.at[i] = side.at.map(|(j, by)| (j, by.map(|by| factor * by)));
     }
-    Bar { at, ..Bar::still(most - long - MARGIN, by_shape) }
+    bar
 }
 
 /// Returns the motion used; `None` for positions of both assemblies, or of none.
@@ -141,17 +124,18 @@ fn stretch(shape: &SliderShape, turns: bool, whole: bool, positions: &[[Complex;
             Stretch { from: begin - backward, to: begin, sign, ends: Some([last, 0]) }
         });
     }
-    let (mut low, mut high, mut turned_by) = ((0.0, 0), (0.0, 0), 0.0);
-    for (j, pair) in positions.windows(2).enumerate() {
-        turned_by += turn(pair);
-        if turned_by < low.0 {
-            low = (turned_by, j + 1);
-        }
-        if turned_by > high.0 {
-            high = (turned_by, j + 1);
-        }
-    }
+    let [low, high] = turned_range(positions);
     Some(Stretch { from: begin + low.0, to: begin + high.0, sign, ends: Some([low.1, high.1]) })
+}
+
+/// Returns the places of C, D and P.
+fn places(shape: &SliderShape, [e, u]: [Complex; 2]) -> [Complex; MOVING] {
+    let pin = shape.crank_pivot + e * shape.crank;
+    let second = match shape.closure {
+        Closure::Line { coupler, .. } => pin + u * coupler,
+        Closure::Block { pivot, offset } => pivot - turned(u) * offset,
+    };
+    [pin, second, pin + u * shape.offset]
 }
 
 /// A moving joint, base + a e + z u, with its derivatives by the unknowns at held directions.
@@ -165,7 +149,7 @@ struct Joint {
 /// Returns C, D and P at a position.
 fn joints(shape: &SliderShape, [e, u]: [Complex; 2]) -> [Joint; MOVING] {
     let (zero, one) = (Complex::new(0.0, 0.0), Complex::new(1.0, 0.0));
-    let pin = shape.crank_pivot + e * shape.crank;
+    let [pin, second_pin, point] = places(shape, [e, u]);
     let with_crank = [one, Complex::i(), e, zero, zero, zero, zero, zero];
     let by_crank = turned(e) * shape.crank;
     let crank_pin = Joint { place: pin, by_shape: with_crank, by_angles: [by_crank, zero] };
@@ -173,21 +157,17 @@ fn joints(shape: &SliderShape, [e, u]: [Complex; 2]) -> [Joint; MOVING] {
         Closure::Line { coupler, .. } => {
             let mut by_shape = with_crank;
             by_shape[3] = u;
-            Joint { place: pin + u * coupler, by_shape, by_angles: [by_crank, turned(u) * coupler] }
+            Joint { place: second_pin, by_shape, by_angles: [by_crank, turned(u) * coupler] }
         }
-        Closure::Block { pivot, offset } => {
-            let across = turned(u);
-            Joint {
-                place: pivot - across * offset,
-                by_shape: [zero, zero, zero, one, Complex::i(), -across, zero, zero],
-                by_angles: [zero, u * offset],
-            }
-        }
+        Closure::Block { offset, .. } => Joint {
+            place: second_pin,
+            by_shape: [zero, zero, zero, one, Complex::i(), -turned(u), zero, zero],
+            by_angles: [zero, u * offset],
+        },
     };
     let mut by_shape = with_crank;
     (by_shape[6], by_shape[7]) = (u, turned(u));
-    let point =
-        Joint { place: pin + u * shape.offset, by_shape, by_angles: [by_crank, turned(u) * shape.offset] };
+    let point = Joint { place: point, by_shape, by_angles: [by_crank, turned(u) * shape.offset] };
     [crank_pin, second, point]
 }
 
@@ -227,7 +207,7 @@ fn reaches(
 
 /// Returns the least coordinate of a joint over the positions alone.
 fn nearest(shape: &SliderShape, positions: &[[Complex; 2]], joint: usize, side: Side) -> Option<Reach> {
-    let value = |j: &usize| side.inwards(joints(shape, positions[*j])[joint].place);
+    let value = |j: &usize| side.inwards(places(shape, positions[*j])[joint]);
     let least = (0..positions.len()).min_by(|i, k| value(i).total_cmp(&value(k)))?;
     Some(at_position(shape, (least, positions[least]), joint, side))
 }
@@ -259,12 +239,7 @@ impl<'a> Samples<'a> {
         let mut e = Complex::from_polar(1.0, samples.stretch.from);
         for _ in 0..=INTERVALS {
             let u = shape.coupler_direction(e, samples.stretch.sign)?;
-            let pin = shape.crank_pivot + e * shape.crank;
-            let second = match shape.closure {
-                Closure::Line { coupler, .. } => pin + u * coupler,
-                Closure::Block { pivot, offset } => pivot - turned(u) * offset,
-            };
-            samples.places.push([pin, second, pin + u * shape.offset]);
+            samples.places.push(places(shape, [e, u]));
             e *= one;
         }
         Some(samples)

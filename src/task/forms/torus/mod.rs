@@ -191,12 +191,19 @@ fn rocking<'p>(
     positions: &[[Complex; 2]],
     assembly: AssemblyMode,
 ) -> Option<(Motion<'p>, Option<[usize; 2]>)> {
-    let (mut low, mut high) = ((0.0, 0), (0.0, 0));
-    let mut turned_by = 0.0;
+    let (first, rest) = positions.split_first()?;
+    if rest.iter().any(|[e, u]| assembly_of(shape, *e, *u) != assembly) {
+        return None;
+    }
+    let (begin, [low, high]) = (first[0].arg(), turned_range(positions));
+    Some((Motion::Stretch(begin + low.0, begin + high.0, assembly), Some([low.1, high.1])))
+}
+
+/// Returns the least and the greatest angle by which the crank has turned from the first position, going through all of them,
+/// each with the position there.
+pub(in crate::task::forms) fn turned_range(positions: &[[Complex; 2]]) -> [(f64, usize); 2] {
+    let (mut low, mut high, mut turned_by) = ((0.0, 0), (0.0, 0), 0.0);
     for (j, pair) in positions.windows(2).enumerate() {
-        if assembly_of(shape, pair[1][0], pair[1][1]) != assembly {
-            return None;
-        }
         turned_by += (pair[1][0] * pair[0][0].conj()).arg();
         if turned_by < low.0 {
             low = (turned_by, j + 1);
@@ -205,8 +212,7 @@ fn rocking<'p>(
             high = (turned_by, j + 1);
         }
     }
-    let first = positions.first()?[0].arg();
-    Some((Motion::Stretch(first + low.0, first + high.0, assembly), Some([low.1, high.1])))
+    [low, high]
 }
 
 /// Returns the curve's frame at a position: Y, c_phi, c_w.
