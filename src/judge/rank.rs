@@ -7,8 +7,8 @@
 //! - they are nearly the same linkage: at the first point their joints A, B, C, D and P lie within [`NEAR`] of
 //!   the larger linkage's span of each other, or those of a cognate (Roberts) or of the linkage seen from its
 //!   other side do; or
-//! - they draw the same curve: their coupler points at the target points, and their whole curves, lie within
-//!   [`SAME_CURVE`] of the target's size of each other; or
+//! - they are of one kind and draw the same curve: their coupler points at the target points, and their whole curves, lie
+//!   within [`SAME_CURVE`] of the target's size of each other; or
 //! - the target is symmetric, and its symmetry maps the one to the other (only in the list that is reported; a search
 //!   goes on for as long as it did without this rule).
 //!
@@ -20,6 +20,7 @@ use super::look::Look;
 pub use super::look::NEAR;
 use super::symmetry::Symmetries;
 use crate::judge::error::structural_error;
+use crate::mechanism::LoopKind;
 use crate::record::{Candidate, Figure, Requirement};
 use crate::task::Defect;
 use crate::task::Problem;
@@ -208,7 +209,8 @@ fn chosen_but_for(
     let looks: Vec<Look<'_>> = found.iter().map(|c| Look::of(Cow::Borrowed(c))).collect();
     let reach = SAME_CURVE * problem.task().size();
     let mut taken: Vec<usize> = Vec::new();
-    let mut images: Vec<Look<'_>> = Vec::new();
+    let kind = |i: usize| found[i].linkage.kind();
+    let mut images: Vec<(LoopKind, Look<'_>)> = Vec::new();
     // A candidate that is one answer with a taken one stays so: a taken one is never given back.
     let mut dropped = vec![false; found.len()];
     let mut take = |among: &[usize], apart: f64| {
@@ -225,15 +227,16 @@ fn chosen_but_for(
                 continue;
             }
             let own = &looks[i];
-            // The curve of a function's follower says nothing about the function.
-            dropped[i] = !problem.is_function()
-                && taken.iter().any(|&k| own.draws_the_curve_of(&looks[k], reach))
-                || images
-                    .iter()
-                    .any(|image| own.difference(image) < NEAR || own.draws_the_curve_of(image, reach));
+            // A slider is another machine than a four-bar, whatever it draws. The curve of a function's follower says nothing
+            // about the function.
+            let draws =
+                |of: LoopKind, other: &Look<'_>| of == kind(i) && own.draws_the_curve_of(other, reach);
+            dropped[i] = !problem.is_function() && taken.iter().any(|&k| draws(kind(k), &looks[k]))
+                || images.iter().any(|(of, image)| own.difference(image) < NEAR || draws(*of, image));
             if !dropped[i] {
                 taken.push(i);
-                images.extend(symmetries.images(problem, &found[i]).map(|c| Look::of(Cow::Owned(c))));
+                let of = kind(i);
+                images.extend(symmetries.images(problem, &found[i]).map(|c| (of, Look::of(Cow::Owned(c)))));
             }
         }
     };

@@ -376,3 +376,25 @@ fn an_extent_and_a_footprint_are_held_within_the_search() {
         assert_eq!(verify(&boxed).expect("a problem"), []);
     }
 }
+
+#[test]
+fn a_slider_that_draws_nearly_what_a_four_bar_draws_is_listed_beside_it() {
+    let bean: Vec<String> = turn(40)
+        .into_iter()
+        .map(|t| {
+            let r = 40.0 * (1.0 + 0.25 * (2.0 * t).cos() + 0.12 * (3.0 * t).sin());
+            format!("[{:.2}, {:.2}]", 100.0 + r * t.cos(), 60.0 + 0.7 * r * t.sin())
+        })
+        .collect();
+    let text = format!(
+        "format = 1\n[task.path]\nclosed = true\npoints = [{}]\n[design]\nmechanism = [\"four-bar\", \
+         \"inverted-slider-crank\"]\n[require]\ninput = \"full-turn\"\ntransmission_deg_min = 30\n[solve]\nadvice = false\n",
+        bean.join(", ")
+    );
+    let record = solved(parse(&text).spec);
+    let kinds: Vec<LoopKind> = record.candidates.iter().map(|c| c.linkage.kind()).collect();
+    assert!(kinds[..2].contains(&LoopKind::FourBar), "{kinds:?}");
+    assert!(kinds[..2].contains(&LoopKind::InvertedSliderCrank), "{kinds:?}");
+    assert!(record.candidates.windows(2).all(|c| c[0].error.rms <= c[1].error.rms));
+    assert_eq!(verify(&record).expect("a problem"), []);
+}

@@ -4,9 +4,10 @@
 //!
 //! A round draws `DRAWS` shapes of one kind ([`starts`]), or pairs dyads that suit the poses ([`guided`]), or solves for
 //! shapes that suit the pairs of a function (`output_starts`), fits the `SHORT` that are nearest to the target for a few steps
-//! and the best `LONG` of those that lie apart to convergence, and has the ends judged ([`fits`]). Kinds take turns. Rounds
-//! run in parallel in batches and are read in their order: the number of threads changes
-//! nothing but the time. The search ends when enough rounds have reached the best answer (or the search has gone on for
+//! and the best `LONG` of those that lie apart to convergence, and has the ends judged ([`fits`]); one that is nearly exact
+//! after its few steps goes first. Kinds take turns. Of a path one round in `HOP_EVERY` changes known answers instead of
+//! drawing, which says nothing for the belief in them, and a glimpse draws every kind in each round. Rounds run in parallel in
+//! batches and are read in their order: the number of threads changes nothing but the time. The search ends when enough rounds have reached the best answer (or the search has gone on for
 //! several times as long as it took to reach it) and as many distinct answers as were asked for are known, or no new one has
 //! come for `quiet_batches` of them; an exact answer needs no second hit, and where one is enough the rounds after it in its
 //! batch are not read. The best answers are fitted on to the last digit at the end; exact ones that form a family are led to
@@ -163,14 +164,11 @@ impl<'a> Sliders<'a> {
         let mut fits = Fits::new(context, target, self.exact, allowance);
         let mut outcome = RoundOutcome::default();
         let mut draws = stream(problem.spec().solve.seed, STREAMS + index);
-        let (kind, limits) = &self.kinds[index as usize % self.kinds.len()];
+        let turn = &self.kinds[index as usize % self.kinds.len()];
+        let (kind, limits) = turn;
         let first = (index as usize) < self.kinds.len();
         // A glimpse of a path draws each kind in every round: the shapes that resemble it most tell which.
-        let drawn_kinds = if self.glimpse.is_some() {
-            &self.kinds[..]
-        } else {
-            slice::from_ref(&self.kinds[index as usize % self.kinds.len()])
-        };
+        let drawn_kinds = if self.glimpse.is_some() { &self.kinds[..] } else { slice::from_ref(turn) };
         let known: Vec<Start> =
             if self.hops(index) { self.known(problem, *kind).collect() } else { Vec::new() };
         let mut drawn: Vec<(f64, Start)> = match (&self.guided, &target.outputs) {
