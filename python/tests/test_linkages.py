@@ -249,6 +249,19 @@ SLIDERS = [
 
 
 @pytest.mark.parametrize("linkage", SLIDERS, ids=lambda linkage: str(linkage.kind))
+def test_lengths_of_a_linkage_with_a_slider_are_snapped(linkage: lw.SliderLinkage) -> None:
+    snapped = lw.snap(linkage, grid=0.07, snap=["a", "b", "ground"])
+    best = snapped.candidates[0].linkage
+    assert isinstance(best, lw.SliderLinkage) and best.kind == linkage.kind
+    lengths = [best.a] + [length for length in (best.b,) if length is not None]
+    for length in lengths:
+        assert length / 0.07 == pytest.approx(round(length / 0.07), abs=1e-9)
+    assert lw.verify(snapped).ok
+    with pytest.raises(lw.ProblemError, match=f"a {linkage.kind} has no such dimension"):
+        lw.snap(linkage, grid=0.07, keep=["c"])
+
+
+@pytest.mark.parametrize("linkage", SLIDERS, ids=lambda linkage: str(linkage.kind))
 def test_a_linkage_with_a_slider_moves_and_reads_back(linkage: lw.SliderLinkage, tmp_path: Path) -> None:
     at = linkage.positions(ANGLES)
     crank = at.C - np.array(linkage.A)

@@ -108,6 +108,13 @@ impl Fixed {
         fixed
     }
 
+    /// Returns the problem with these dimensions as numbers; `None` if it is none. `polar`: see [`Fixed::design`].
+    fn narrowed(&self, problem: &Problem, polar: bool) -> Option<Problem> {
+        let mut spec = problem.spec().clone();
+        spec.design = self.design(&spec.design, polar);
+        Problem::new(spec).ok()
+    }
+
     /// Returns the design table with these dimensions as numbers. `polar`: B by the ground's length and direction, so
     /// that a fixed length holds to the last digit; B's own limits are then left to the referee.
     fn design(&self, design: &DesignSpec, polar: bool) -> DesignSpec {
@@ -179,9 +186,7 @@ fn fit(
     (polar, evaluations): (bool, u64),
 ) -> (Option<Candidate>, u64) {
     let problem = context.problem;
-    let mut spec = problem.spec().clone();
-    spec.design = fixed.design(&spec.design, polar);
-    let Ok(narrowed) = Problem::new(spec) else { return (None, 0) };
+    let Some(narrowed) = fixed.narrowed(problem, polar) else { return (None, 0) };
     // If A moves on a circle around a fixed B, the fit has to begin at the right distance: that is a condition, not a
     // coordinate of the design.
     let moved = candidate
@@ -207,9 +212,7 @@ fn fit_slider(
     evaluations: u64,
 ) -> (Option<Candidate>, u64) {
     let problem = context.problem;
-    let mut spec = problem.spec().clone();
-    spec.design = fixed.design(&spec.design, false);
-    let Ok(narrowed) = Problem::new(spec) else { return (None, 0) };
+    let Some(narrowed) = fixed.narrowed(problem, false) else { return (None, 0) };
     let (end, used) = sliders::refit(context.of(&narrowed), candidate, (LONG_FIT, evaluations, 0.0));
     let found = end.and_then(|found| {
         let linkage = slider_to_the_digit(&found.linkage, fixed)?;
