@@ -30,7 +30,7 @@ use linkwright::Problem;
 use linkwright::internals::app::job::run::{Context, Job, run};
 use linkwright::internals::files::problem_file::parse;
 use linkwright::internals::mechanism::{
-    AssemblyMode, Complex, FourBar, InvertedSliderCrank, LoopJoints, LoopKind, OneLoop, SliderCrank,
+    AssemblyMode, Complex, CrankLinkage, FourBar, InvertedSliderCrank, LinkageKind, LoopJoints, SliderCrank,
     bounding_box, xy,
 };
 use linkwright::internals::numbers::arithmetic::streams::{Stream, below, stream, uniform};
@@ -80,8 +80,8 @@ impl Points {
     }
 
     /// Returns whether a kind has such targets: the slider of a slider-crank does not turn.
-    fn suits(self, kind: LoopKind) -> bool {
-        self != Points::Angles || kind != LoopKind::SliderCrank
+    fn suits(self, kind: LinkageKind) -> bool {
+        self != Points::Angles || kind != LinkageKind::SliderCrank
     }
 
     fn is_motion(self) -> bool {
@@ -92,7 +92,7 @@ impl Points {
 /// A target holds points, the angles of the body there and those of the crank, in degrees, the outputs of a function, and the
 /// linkage that made them.
 struct Asked {
-    linkage: OneLoop,
+    linkage: CrankLinkage,
     points: Vec<Complex>,
     body_deg: Vec<f64>,
     crank_deg: Vec<f64>,
@@ -100,7 +100,7 @@ struct Asked {
 }
 
 /// Draws a linkage of a kind whose crank turns fully, with joints within a few cranks of each other.
-fn drawn(kind: LoopKind, draws: &mut Stream) -> Option<OneLoop> {
+fn drawn(kind: LinkageKind, draws: &mut Stream) -> Option<CrankLinkage> {
     let turn = Complex::from_polar(1.0, uniform(draws, -PI, PI));
     let assembly = if below(draws, 2) == 0 { AssemblyMode::Plus } else { AssemblyMode::Minus };
     let place = |draws: &mut Stream, reach: f64| {
@@ -109,25 +109,25 @@ fn drawn(kind: LoopKind, draws: &mut Stream) -> Option<OneLoop> {
     let (pivot, offset) = (place(draws, 2.0), place(draws, 4.0));
     let crank = uniform(draws, 0.3, 2.0);
     let linkage = match kind {
-        LoopKind::FourBar => {
+        LinkageKind::FourBar => {
             let ground = turn * uniform(draws, 1.0, 4.0);
             let (coupler, follower) = (uniform(draws, 1.0, 4.0), uniform(draws, 1.0, 4.0));
             let links = [crank, coupler, follower];
-            OneLoop::FourBar(
+            CrankLinkage::FourBar(
                 FourBar::with_coupler_offset([pivot, pivot + ground], links, offset, assembly).ok()?,
             )
         }
-        LoopKind::SliderCrank => {
+        LinkageKind::SliderCrank => {
             let coupler = uniform(draws, 1.0, 5.0);
             let line = (pivot + place(draws, 2.0), turn.arg());
-            OneLoop::SliderCrank(
+            CrankLinkage::SliderCrank(
                 SliderCrank::from_parts(pivot, [crank, coupler], line, offset, assembly).ok()?,
             )
         }
-        LoopKind::InvertedSliderCrank => {
+        LinkageKind::InvertedSliderCrank => {
             let block = pivot + turn * uniform(draws, 0.3, 5.0);
             let h = uniform(draws, -1.5, 1.5);
-            OneLoop::InvertedSliderCrank(
+            CrankLinkage::InvertedSliderCrank(
                 InvertedSliderCrank::from_parts([pivot, block], crank, h, offset, assembly).ok()?,
             )
         }
@@ -138,7 +138,7 @@ fn drawn(kind: LoopKind, draws: &mut Stream) -> Option<OneLoop> {
 }
 
 /// Returns whether a linkage lies within the default bounds of its target.
-fn within_bounds(linkage: &OneLoop, points: &[Complex]) -> bool {
+fn within_bounds(linkage: &CrankLinkage, points: &[Complex]) -> bool {
     let [low, high] = bounding_box(points.iter().copied());
     let (centre, size) = (0.5 * (low + high), (high - low).norm());
     let near = |p: Complex| (p - centre).re.abs() <= REACH * size && (p - centre).im.abs() <= REACH * size;
@@ -157,7 +157,7 @@ fn within_bounds(linkage: &OneLoop, points: &[Complex]) -> bool {
 }
 
 /// Returns whether a linkage lies within the default bounds of the function that it generates.
-fn generates_within_bounds(linkage: &OneLoop, of: Points, outputs: &[f64]) -> bool {
+fn generates_within_bounds(linkage: &CrankLinkage, of: Points, outputs: &[f64]) -> bool {
     let [low, high] = outputs.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], output| {
         [low.min(*output), high.max(*output)]
     });
@@ -165,9 +165,11 @@ fn generates_within_bounds(linkage: &OneLoop, of: Points, outputs: &[f64]) -> bo
     let size = if of == Points::Places { high - low } else { ground.unwrap_or(1.0) };
     let lengths = [Some(linkage.crank()), linkage.coupler(), ground];
     let offset = match linkage {
-        OneLoop::InvertedSliderCrank(l) => l.offset(),
-        OneLoop::SliderCrank(l) => ((l.line_point() - linkage.crank_pivot()) * l.line_direction().conj()).im,
-        OneLoop::FourBar(_) => 0.0,
+        CrankLinkage::InvertedSliderCrank(l) => l.offset(),
+        CrankLinkage::SliderCrank(l) => {
+            ((l.line_point() - linkage.crank_pivot()) * l.line_direction().conj()).im
+        }
+        CrankLinkage::FourBar(_) => 0.0,
     };
     // Outputs are wrapped to half a turn.
     let turns = of == Points::Angles && outputs.windows(2).any(|w| (w[1] - w[0]).abs() > 180.0);
@@ -177,7 +179,7 @@ fn generates_within_bounds(linkage: &OneLoop, of: Points, outputs: &[f64]) -> bo
 }
 
 /// Draws a linkage and places of its coupler.
-fn target(kind: LoopKind, of: Points, draws: &mut Stream) -> Asked {
+fn target(kind: LinkageKind, of: Points, draws: &mut Stream) -> Asked {
     loop {
         let Some(linkage) = drawn(kind, draws) else { continue };
         let from = uniform(draws, -PI, PI);
@@ -216,7 +218,7 @@ fn target(kind: LoopKind, of: Points, draws: &mut Stream) -> Asked {
 }
 
 /// Returns the problem of a path.
-fn path(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> ProblemSpec {
+fn path(asked: &Asked, of: Points, mechanism: &[LinkageKind], seed: u64) -> ProblemSpec {
     let points: Vec<[f64; 2]> = asked.points.iter().copied().map(xy).collect();
     let design = DesignSpec { mechanism: mechanism.to_vec(), ..DesignSpec::default() };
     let mut builder = Problem::builder(points).closed(of == Points::Closed).any_longest().design(design);
@@ -228,7 +230,7 @@ fn path(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> Problem
 }
 
 /// Returns the problem of a motion.
-fn motion(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> ProblemSpec {
+fn motion(asked: &Asked, of: Points, mechanism: &[LinkageKind], seed: u64) -> ProblemSpec {
     let pose = |(point, deg): (&Complex, &f64)| format!("[{:?}, {:?}, {deg:?}]", point.re, point.im);
     let poses: Vec<String> = asked.points.iter().zip(&asked.body_deg).map(pose).collect();
     let timing = if of.is_timed() {
@@ -246,7 +248,7 @@ fn motion(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> Probl
 }
 
 /// Returns the problem of a function.
-fn function(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> ProblemSpec {
+fn function(asked: &Asked, of: Points, mechanism: &[LinkageKind], seed: u64) -> ProblemSpec {
     let kinds: Vec<&str> = mechanism.iter().map(|kind| kind.name()).collect();
     let key = if of == Points::Places { "output" } else { "output_deg" };
     let text = format!(
@@ -259,7 +261,12 @@ fn function(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> Pro
 
 /// Searches for a target, and returns the kind, the rms over the size (of poses with their angles) and the milliseconds of
 /// the search.
-fn search(asked: &Asked, of: Points, mechanism: &[LoopKind], seed: u64) -> (Option<LoopKind>, f64, f64) {
+fn search(
+    asked: &Asked,
+    of: Points,
+    mechanism: &[LinkageKind],
+    seed: u64,
+) -> (Option<LinkageKind>, f64, f64) {
     let of_task = match (of.is_motion(), of.is_function()) {
         (true, _) => motion,
         (_, true) => function,
@@ -289,7 +296,7 @@ fn main() {
     let filter = plain.iter().find(|a| a.parse::<usize>().is_err()).map_or("", |a| a.as_str());
     let count: Option<usize> = plain.iter().find_map(|a| a.parse().ok());
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("a pool");
-    let sliders = [LoopKind::SliderCrank, LoopKind::InvertedSliderCrank];
+    let sliders = [LinkageKind::SliderCrank, LinkageKind::InvertedSliderCrank];
     println!("{:<34} {:>10} {:>10} {:>10} {:>10}", "class", "recovered", "median ms", "90 %", "largest");
     let mut seen = 0;
     for (name, of) in Points::ALL {
@@ -307,15 +314,19 @@ fn main() {
     }
     if "mixed".contains(filter) {
         seen += 1;
-        let kinds =
-            [LoopKind::FourBar, LoopKind::SliderCrank, LoopKind::FourBar, LoopKind::InvertedSliderCrank];
+        let kinds = [
+            LinkageKind::FourBar,
+            LinkageKind::SliderCrank,
+            LinkageKind::FourBar,
+            LinkageKind::InvertedSliderCrank,
+        ];
         let each = |case: usize| {
             let kind = kinds[case % 4];
             (kind, target(kind, Points::Closed, &mut stream(seed, 1000 + case as u64)))
         };
         let mixed = || cases(count.unwrap_or(40));
         let alone = row("mixed, their own kind alone", mixed().map(each), Points::Closed, &[], show);
-        let all = row("mixed, all kinds", mixed().map(each), Points::Closed, &LoopKind::ALL, show);
+        let all = row("mixed, all kinds", mixed().map(each), Points::Closed, &LinkageKind::ALL, show);
         let ratios: Vec<f64> = all.iter().zip(&alone).map(|(all, alone)| all / alone).collect();
         println!(
             "  all kinds over the own kind, target by target: median {:.2}, largest {:.2}; in sum {:.2}",
@@ -331,9 +342,9 @@ fn main() {
 /// milliseconds of each.
 fn row(
     class: &str,
-    each: impl Iterator<Item = (LoopKind, Asked)>,
+    each: impl Iterator<Item = (LinkageKind, Asked)>,
     of: Points,
-    mechanism: &[LoopKind],
+    mechanism: &[LinkageKind],
     show: bool,
 ) -> Vec<f64> {
     let (mut recovered, mut all, mut times) = (0, 0, Vec::new());

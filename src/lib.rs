@@ -39,7 +39,7 @@
 //! | layer | holds | may use |
 //! |---|---|---|
 //! | `numbers` | packages of their own that use nothing of this one: `arithmetic/` (lanes, double-double numbers, random streams), `optimise/` (least squares, population searches, convex programs), `nine_point/` (all four-bars through nine points, or through poses, points and given pivots, by homotopy continuation), `bound/` (lower bounds by branch and bound), `checker/` (checks the proofs of `bound` independently), `leaves/` (the file format of those proofs) | |
-//! | `mechanism` | what a linkage is and where it is: the [`four_bar`](internals::mechanism::four_bar) (position, gradient, mobility, transmission angle, coupler curve, cognates), the [`slider_crank`](internals::mechanism::slider_crank) and the [`inverted_slider_crank`](internals::mechanism::inverted_slider_crank), the three behind one type ([`one_loop`](internals::mechanism::one_loop)), the [`chain`](internals::mechanism::chain), the [`dyad_chain`](internals::mechanism::dyad_chain) (six-bars, eight-bars), the trait that [`any`](internals::mechanism::any) of them implements, their [`analysis`](internals::mechanism::analysis), the [`dyad`](internals::mechanism::dyad) that guides a body through poses, their [`plates`](internals::mechanism::plates) | numbers |
+//! | `mechanism` | what a linkage is and where it is: the [`four_bar`](internals::mechanism::four_bar) (position, gradient, mobility, transmission angle, coupler curve, cognates), the [`slider_crank`](internals::mechanism::slider_crank) and the [`inverted_slider_crank`](internals::mechanism::inverted_slider_crank), the three behind one type ([`crank_linkage`](internals::mechanism::crank_linkage)), the [`chain`](internals::mechanism::chain), the [`dyad_chain`](internals::mechanism::dyad_chain) (six-bars, eight-bars), the trait that [`any`](internals::mechanism::any) of them implements, their [`analysis`](internals::mechanism::analysis), the [`dyad`](internals::mechanism::dyad) that guides a body through poses, their [`plates`](internals::mechanism::plates) | numbers |
 //! | `task` | what is wanted: the path, the motion or the function, the [`spec`](internals::task::spec) with every key of a problem file, the checked [`Problem`], the [list of requirements](internals::task::requirement), and the task as mathematics in [`forms`](internals::task::forms) (design space, residuals, [rows of the requirements](internals::task::forms::rows)) | numbers, mechanism |
 //! | `record` | the record of a run: what was asked, done and found; its front and its picks | numbers, mechanism, task |
 //! | `judge` | verdicts: the [`referee`](internals::judge::referee) (order, circuit and branch defects), [`assess`](internals::judge::assess) (every figure of a candidate), ranking, warnings, cognates, costs, trade-offs, [`certificate`](internals::judge::certificate), [`practicality`](internals::judge::practicality), and [`verify`](internals::judge::verify), which recomputes a record | numbers, mechanism, task, record |
@@ -72,10 +72,10 @@ pub use judge::certificate::{NoCertificate, Request as CertificateRequest, certi
 pub use judge::verify::{Mismatch, verify};
 pub use mechanism::four_bar::cognate::Cognate;
 pub use mechanism::{
-    AssemblyMode, Chain, ChainBuilder, Complex, CouplerCurve, CouplerSide, FourBar, InvertedSliderCrank,
-    InvertedSliderCrankParameters, Joints, Linkage, LinkageError, LinkageType, LoopKind, Mobility,
-    NaturalCoordinates, OneLoop, Position, SliderCrank, SliderCrankParameters, SliderLinkage, Unit,
-    VectorLoop,
+    AssemblyMode, Chain, ChainBuilder, Complex, CouplerCurve, CouplerSide, CrankLinkage, FourBar,
+    InvertedSliderCrank, InvertedSliderCrankParameters, Joints, Linkage, LinkageError, LinkageKind,
+    LinkageType, Mobility, NaturalCoordinates, Position, SliderCrank, SliderCrankParameters, SliderLinkage,
+    Unit, VectorLoop,
 };
 pub use record::{Candidate, Certificate, Record};
 pub use report::export::{

@@ -21,7 +21,7 @@ use linkwright::internals::mechanism::analysis::{
     PositionMethod, Request as Analysis, analyze as analyze_four_bar, full_turn,
 };
 use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
-use linkwright::internals::mechanism::{Linkage, OneLoop};
+use linkwright::internals::mechanism::{Linkage, CrankLinkage};
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::analysis_csv::analysis_csv;
 use linkwright::internals::report::analysis_sheets::analysis_svg;
@@ -116,11 +116,11 @@ fn of_file<'py>(py: Python<'py>, file: AnyLinkageFile, text: String) -> PyResult
         }
         Linkage::Chain(chain) => Bound::new(py, Chain { name, unit, chain: *chain, text })?.into_any(),
         Linkage::SliderCrank(linkage) => {
-            let linkage = OneLoop::SliderCrank(linkage);
+            let linkage = CrankLinkage::SliderCrank(linkage);
             Bound::new(py, SliderLinkage { name, unit, linkage })?.into_any()
         }
         Linkage::InvertedSliderCrank(linkage) => {
-            let linkage = OneLoop::InvertedSliderCrank(linkage);
+            let linkage = CrankLinkage::InvertedSliderCrank(linkage);
             Bound::new(py, SliderLinkage { name, unit, linkage })?.into_any()
         }
     })

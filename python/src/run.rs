@@ -16,7 +16,7 @@ use linkwright::internals::app::job::run::{Context, Finished, Job, prove, run as
 use linkwright::internals::app::job::save::{self, Listener, Options, Ran};
 use linkwright::internals::files::linkage_file::{AnyLinkageFile, LinkageFile};
 use linkwright::internals::judge::certificate;
-use linkwright::internals::mechanism::OneLoop;
+use linkwright::internals::mechanism::CrankLinkage;
 use linkwright::internals::report::html::Shown;
 use linkwright::internals::report::html::{candidate_markup, report_showing, summary_markup};
 use linkwright::internals::report::svg::drawing_svg;
@@ -280,7 +280,7 @@ impl Run {
             let (candidate, name) = self.chosen(which)?;
             let unit = self.record.problem.unit;
             Ok(match candidate.linkage {
-                OneLoop::FourBar(linkage) => {
+                CrankLinkage::FourBar(linkage) => {
                     Bound::new(py, FourBar { file: LinkageFile { name, unit, linkage } })?.into_any()
                 }
                 linkage => Bound::new(py, SliderLinkage { name, unit, linkage })?.into_any(),

@@ -10,7 +10,7 @@ use linkwright::internals::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, PointMotion};
 use linkwright::internals::mechanism::slider::motion::{SlidingMotion, motion};
 use linkwright::internals::mechanism::{
-    InvertedSliderCrank, InvertedSliderCrankParameters, LinkageError, LoopJoints, OneLoop, SliderCrank,
+    InvertedSliderCrank, InvertedSliderCrankParameters, LinkageError, LoopJoints, CrankLinkage, SliderCrank,
     SliderCrankParameters, xy,
 };
 use linkwright::{AssemblyMode, Complex, Unit};
@@ -30,7 +30,7 @@ use serde_json::json;
 pub struct SliderLinkage {
     pub name: String,
     pub unit: Option<Unit>,
-    pub linkage: OneLoop,
+    pub linkage: CrankLinkage,
 }
 
 /// Velocities or accelerations of a linkage with a slider; NaN where the loop does not close and at toggles.
@@ -60,9 +60,9 @@ impl SliderLinkage {
 
     fn moving(&self, angle: f64, input: CrankMotion) -> Option<SlidingMotion> {
         match &self.linkage {
-            OneLoop::FourBar(_) => None,
-            OneLoop::SliderCrank(linkage) => motion(linkage, angle, input).definite(),
-            OneLoop::InvertedSliderCrank(linkage) => motion(linkage, angle, input).definite(),
+            CrankLinkage::FourBar(_) => None,
+            CrankLinkage::SliderCrank(linkage) => motion(linkage, angle, input).definite(),
+            CrankLinkage::InvertedSliderCrank(linkage) => motion(linkage, angle, input).definite(),
         }
     }
 
@@ -84,7 +84,7 @@ impl SliderLinkage {
     }
 
     /// Returns a linkage, if its numbers are those of one, with its name and the unit of a label.
-    fn named(linkage: Result<OneLoop, LinkageError>, name: &str, label: Option<&str>) -> PyResult<Self> {
+    fn named(linkage: Result<CrankLinkage, LinkageError>, name: &str, label: Option<&str>) -> PyResult<Self> {
         Ok(SliderLinkage { name: name.to_owned(), unit: unit(label)?, linkage: linkage.map_err(refused)? })
     }
 }
@@ -124,7 +124,7 @@ pub fn slider_crank(
             coupler_y,
             assembly: self::t1(t1)?,
         });
-        SliderLinkage::named(made.map(OneLoop::SliderCrank), name, unit)
+        SliderLinkage::named(made.map(CrankLinkage::SliderCrank), name, unit)
     })
 }
 
@@ -157,7 +157,7 @@ pub fn inverted_slider_crank(
             coupler_y,
             assembly: self::t1(t1)?,
         });
-        SliderLinkage::named(made.map(OneLoop::InvertedSliderCrank), name, unit)
+        SliderLinkage::named(made.map(CrankLinkage::InvertedSliderCrank), name, unit)
     })
 }
 

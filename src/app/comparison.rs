@@ -7,7 +7,7 @@ use crate::files::problem_file::ProblemFile;
 use crate::judge::assess::{assess, assess_again};
 use crate::judge::figures::extent;
 use crate::judge::verify::verify_candidate;
-use crate::mechanism::{LinkageError, LoopKind, OneLoop, Unit};
+use crate::mechanism::{CrankLinkage, LinkageError, LinkageKind, Unit};
 use crate::record::Candidate;
 use crate::record::digest::digest;
 use crate::report::certificate::headline;
@@ -50,10 +50,10 @@ enum NotMeasured {
     Linkage(#[from] LinkageError),
     /// The outputs of the function are none that the kind has.
     #[error("a {kind} has {what}")]
-    WithoutOutput { kind: LoopKind, what: &'static str },
+    WithoutOutput { kind: LinkageKind, what: &'static str },
     /// Some crank angles of the target are free, others given.
     #[error("a target with some free crank angles is compared with four-bars alone, and this is a {kind}")]
-    PartlyTimed { kind: LoopKind },
+    PartlyTimed { kind: LinkageKind },
     #[error("it cannot be assembled at every {noun} of {name}")]
     NotAssembled { name: String, noun: &'static str },
 }
@@ -116,7 +116,7 @@ impl Target {
     }
 
     /// Returns the linkage in this target's unit, measured at the positions nearest to its points or at its angles.
-    fn nearest(&self, linkage: OneLoop, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
+    fn nearest(&self, linkage: CrankLinkage, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
         let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| from.factor_to(to));
         let linkage = linkage.scaled(factor)?;
         let (task, kind) = (self.problem.task(), linkage.kind());
@@ -124,7 +124,7 @@ impl Target {
         if let Some(output) = output.filter(|output| !output.is_of(kind)) {
             return Err(NotMeasured::WithoutOutput { kind, what: output.missing() });
         }
-        if task.is_partly_timed() && kind != LoopKind::FourBar {
+        if task.is_partly_timed() && kind != LinkageKind::FourBar {
             return Err(NotMeasured::PartlyTimed { kind });
         }
         nearest_positions(&self.problem, linkage)
@@ -262,7 +262,7 @@ impl Measured {
     }
 
     /// Measures a linkage without a run.
-    fn file(&mut self, label: String, file: &LinkageFile<OneLoop>, on: &Target) {
+    fn file(&mut self, label: String, file: &LinkageFile<CrankLinkage>, on: &Target) {
         let entry = on
             .nearest(file.linkage, file.unit)
             .map(|candidate| on.entry(label.clone(), candidate, file.unit, false));

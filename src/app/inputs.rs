@@ -6,14 +6,14 @@ use crate::app::job::folder::{FolderError, RECORD, read_record};
 use crate::files::diagnostic::Diagnostic;
 use crate::files::linkage_file;
 use crate::files::linkage_file::{AnyLinkageFile, LinkageFile};
-use crate::mechanism::OneLoop;
+use crate::mechanism::CrankLinkage;
 use crate::record::{Candidate, Pick, Record};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 /// An input of the export, comparison and report commands, with linkages of one loop or of one kind.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Given<L = OneLoop> {
+pub enum Given<L = CrankLinkage> {
     /// A result of a run.
     Run(Box<Run>),
     /// A linkage without a run.
@@ -135,7 +135,7 @@ pub enum NotRead {
 /// [`NotRead`].
 pub fn read(argument: &Path) -> Result<Given, NotRead> {
     if is_linkage_file(argument) {
-        return Ok(Given::Linkage(Box::new(linkage_file::load_one_loop(argument)?)));
+        return Ok(Given::Linkage(Box::new(linkage_file::load_crank_linkage(argument)?)));
     }
     Ok(Given::Run(Box::new(read_run(argument)?)))
 }

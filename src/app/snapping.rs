@@ -4,7 +4,7 @@
 use crate::app::inputs::{Given, NoCandidate};
 use crate::files::diagnostic::{Diagnostic, escaped};
 use crate::files::input_text;
-use crate::mechanism::{LoopKind, OneLoop, Unit, xy};
+use crate::mechanism::{CrankLinkage, LinkageKind, Unit, xy};
 use crate::record::{Candidate, ProblemRecord};
 use crate::report::text::clean;
 use crate::synthesis::snap::{Fixed, Length, Stock, own_curve};
@@ -82,7 +82,7 @@ impl Subject {
 #[error("{key}: a {kind} has no such dimension; it has {}", has.join(", "))]
 pub struct NoDimension {
     key: String,
-    kind: LoopKind,
+    kind: LinkageKind,
     has: Vec<&'static str>,
 }
 
@@ -91,7 +91,7 @@ pub struct NoDimension {
 ///
 /// # Errors
 /// [`NoDimension`].
-pub fn fixed(linkage: &OneLoop, keep: &[String], set: &[(String, f64)]) -> Result<Fixed, NoDimension> {
+pub fn fixed(linkage: &CrankLinkage, keep: &[String], set: &[(String, f64)]) -> Result<Fixed, NoDimension> {
     let mut fixed = Fixed::default();
     let second = linkage.second_pivot();
     let missing = |key: &str| NoDimension {

@@ -7,7 +7,7 @@ use crate::judge::error::{StructuralError, distances_to_curve, rms};
 use crate::judge::loosen::design_limits;
 use crate::judge::referee::judge;
 use crate::judge::requirement::{Judged, at_least, at_most};
-use crate::mechanism::{AssemblyMode, Complex, FourBar, InputRange, OneLoop, SliderCrank, point};
+use crate::mechanism::{AssemblyMode, Complex, CrankLinkage, FourBar, InputRange, SliderCrank, point};
 use crate::record::{
     AngleErrorRecord, Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord,
 };
@@ -27,7 +27,7 @@ pub use crate::record::MET_TOLERANCE;
 /// If there are fewer angles or assemblies than points.
 pub fn assess(
     problem: &Problem,
-    linkage: impl Into<OneLoop>,
+    linkage: impl Into<CrankLinkage>,
     crank_deg: &[f64],
     assemblies: &[AssemblyMode],
 ) -> Option<Candidate> {
@@ -56,7 +56,7 @@ pub fn measure_curve(problem: &Problem, candidate: &mut Candidate) {
 /// If there are fewer angles or assemblies than points.
 pub fn assess_on_curve(
     problem: &Problem,
-    linkage: impl Into<OneLoop>,
+    linkage: impl Into<CrankLinkage>,
     at: (&[f64], &[AssemblyMode]),
     own: Option<Reference>,
     to_curve: Option<CurveErrorRecord>,
@@ -156,7 +156,7 @@ pub fn assess_on_curve(
 /// slider the place at an output of 0, in the sense of the outputs, in place of the second. `None` of another task.
 fn offsets_deg(
     problem: &Problem,
-    linkage: &OneLoop,
+    linkage: &CrankLinkage,
     crank_deg: &[f64],
     error: &StructuralError,
 ) -> Option<[f64; 2]> {
@@ -246,7 +246,7 @@ fn passed_place(rail: &SliderCrank, [x, y]: [Limits; 2]) -> Complex {
 }
 
 /// Returns the design table's limits, each with the linkage's own value.
-fn design_rows(problem: &Problem, linkage: &OneLoop) -> Vec<Requirement> {
+fn design_rows(problem: &Problem, linkage: &CrankLinkage) -> Vec<Requirement> {
     let (a, offset) = (linkage.crank_pivot(), linkage.coupler_offset());
     let (four_bar, second) = (linkage.four_bar(), linkage.second_pivot());
     let rail = linkage.slider_crank();

@@ -2,7 +2,7 @@
 
 use super::rank::exact_sum_sq;
 use crate::judge::mechanisms::solution_of;
-use crate::mechanism::OneLoop;
+use crate::mechanism::CrankLinkage;
 use crate::numbers::nine_point::Solution;
 use crate::numbers::nine_point::certificate::{Certificate, certify};
 use crate::record::{Candidate, Certified};
@@ -22,13 +22,13 @@ const SAME: f64 = 1e-7;
 const ROUNDED: f64 = 1e3 * f64::EPSILON;
 
 /// Returns whether two linkages are the same up to rounding.
-pub fn same(one: &OneLoop, other: &OneLoop) -> bool {
-    let numbers = |l: &OneLoop| match l {
-        OneLoop::FourBar(l) => {
+pub fn same(one: &CrankLinkage, other: &CrankLinkage) -> bool {
+    let numbers = |l: &CrankLinkage| match l {
+        CrankLinkage::FourBar(l) => {
             let (a, b, offset) = (l.crank_pivot(), l.follower_pivot(), l.coupler_offset());
             [a.re, a.im, b.re, b.im, l.crank(), l.coupler(), l.follower(), offset.re, offset.im]
         }
-        OneLoop::SliderCrank(_) | OneLoop::InvertedSliderCrank(_) => l.numbers(),
+        CrankLinkage::SliderCrank(_) | CrankLinkage::InvertedSliderCrank(_) => l.numbers(),
     };
     let far = one.pivots().map(|pivot| pivot.norm()).fold(0.0, f64::max);
     let reach = SAME * one.longest_link().max(one.crank_side()) + ROUNDED * far;

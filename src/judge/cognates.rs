@@ -17,7 +17,7 @@ use super::unwrapped::unwrapped;
 use crate::judge::assess::assess_on_curve;
 use crate::mechanism::four_bar::cognate::{Cognate, OriginalLink};
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, OneLoop};
+use crate::mechanism::{AssemblyMode, CrankLinkage};
 use crate::record::{Alternative, Candidate};
 use crate::task::Problem;
 use crate::task::{AngleOffset, Timing};
@@ -56,7 +56,12 @@ const ROUNDED: f64 = 32.0 * f64::EPSILON;
 ///
 /// Each error vector is the difference of a point and a coupler point, off by at most r, `ROUNDED` of the largest
 /// coordinate or length of the two linkages and the points; so that |sqrt(s_1) - sqrt(s_2)| <= 2 r sqrt(n).
-pub fn has_error_of(problem: &Problem, candidate: &Candidate, form: (&OneLoop, f64), times: f64) -> bool {
+pub fn has_error_of(
+    problem: &Problem,
+    candidate: &Candidate,
+    form: (&CrankLinkage, f64),
+    times: f64,
+) -> bool {
     let (linkage, sum_sq) = form;
     let task = problem.task();
     let of_points = task.points().iter().fold(0.0, |reach: f64, p| reach.max(p.norm()));
@@ -68,13 +73,13 @@ pub fn has_error_of(problem: &Problem, candidate: &Candidate, form: (&OneLoop, f
 }
 
 /// Returns the largest number that a coupler point of a linkage is computed from.
-fn magnitude(linkage: &OneLoop) -> f64 {
+fn magnitude(linkage: &CrankLinkage) -> f64 {
     let pivots = linkage.pivots().map(|pivot| pivot.norm()).fold(0.0, f64::max);
     pivots.max(linkage.longest_link()).max(linkage.crank_side())
 }
 
 /// A linkage with its crank angle (degrees) and assembly at each point.
-pub type At<'a> = (&'a OneLoop, &'a [f64], &'a [AssemblyMode]);
+pub type At<'a> = (&'a CrankLinkage, &'a [f64], &'a [AssemblyMode]);
 
 /// The order of linkages of the same curve and error, on a grid above rounding; less is better.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]

@@ -2,7 +2,7 @@
 
 use crate::mechanism::effort::{POINTS_AT_ONCE, computed};
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
-use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, OneLoop};
+use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, CrankLinkage};
 use crate::record::{Candidate, CurveErrorRecord};
 use crate::task::ranges::Reference;
 use crate::task::{Body, Problem, Task};
@@ -169,7 +169,7 @@ impl Task {
     /// If there are fewer angles or assemblies than points.
     pub fn errors(
         &self,
-        linkage: impl Into<OneLoop>,
+        linkage: impl Into<CrankLinkage>,
         crank_angles: &[f64],
         assemblies: &[AssemblyMode],
         own: Option<Reference>,
@@ -234,7 +234,7 @@ const NEAREST: usize = 150;
 /// that circuit has no point.
 pub fn distances_to_curve(
     points: &[Complex],
-    linkage: impl Into<OneLoop>,
+    linkage: impl Into<CrankLinkage>,
     crank_angle: f64,
     assembly: AssemblyMode,
 ) -> Option<CurveErrorRecord> {

@@ -11,7 +11,7 @@ use super::unwrapped::unwrapped;
 use crate::judge::assess::{assess, assess_on_curve};
 use crate::judge::error::rms;
 use crate::judge::referee::judge;
-use crate::mechanism::{AssemblyMode, FourBar, OneLoop};
+use crate::mechanism::{AssemblyMode, CrankLinkage, FourBar};
 use crate::numbers::nine_point::Solution;
 use crate::record::{Candidate, Certified, CurveErrorRecord, ExactForm, ExactLinkage};
 use crate::task::Problem;
@@ -93,7 +93,7 @@ pub fn class(problem: &Problem, target: &Precise, solution: &Solution, depth: De
 /// Returns the errors at the points, in place of those to the curve.
 fn at_points(
     problem: &Problem,
-    linkage: impl Into<OneLoop>,
+    linkage: impl Into<CrankLinkage>,
     crank_deg: &[f64],
     t1_at: &[AssemblyMode],
 ) -> Option<CurveErrorRecord> {

@@ -1,7 +1,7 @@
 //! Difference of two candidates, to tell distinct answers apart: by their joints at the first point, cognates included,
 //! and by their coupler curves.
 
-use crate::mechanism::{Complex, CouplerCurve, OneLoop, nearest_share};
+use crate::mechanism::{Complex, CouplerCurve, CrankLinkage, nearest_share};
 use crate::record::Candidate;
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -41,12 +41,12 @@ impl<'a> Look<'a> {
             let (c, d, p) = (joints.crank_pin, joints.follower_pin, joints.coupler_point);
             let a = linkage.crank_pivot();
             let linkage = match linkage {
-                OneLoop::FourBar(linkage) => linkage,
-                OneLoop::SliderCrank(linkage) => {
+                CrankLinkage::FourBar(linkage) => linkage,
+                CrankLinkage::SliderCrank(linkage) => {
                     let along = linkage.line_direction() * linkage.coupler();
                     return Some(vec![[a, d + along, c, d, p], [a, d - along, c, d, p]]);
                 }
-                OneLoop::InvertedSliderCrank(linkage) => {
+                CrankLinkage::InvertedSliderCrank(linkage) => {
                     return Some(vec![[a, linkage.block_pivot(), c, d, p]]);
                 }
             };

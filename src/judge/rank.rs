@@ -20,7 +20,7 @@ use super::look::Look;
 pub use super::look::NEAR;
 use super::symmetry::Symmetries;
 use crate::judge::error::structural_error;
-use crate::mechanism::LoopKind;
+use crate::mechanism::LinkageKind;
 use crate::record::{Candidate, Figure, Requirement};
 use crate::task::Defect;
 use crate::task::Problem;
@@ -210,7 +210,7 @@ fn chosen_but_for(
     let reach = SAME_CURVE * problem.task().size();
     let mut taken: Vec<usize> = Vec::new();
     let kind = |i: usize| found[i].linkage.kind();
-    let mut images: Vec<(LoopKind, Look<'_>)> = Vec::new();
+    let mut images: Vec<(LinkageKind, Look<'_>)> = Vec::new();
     // A candidate that is one answer with a taken one stays so: a taken one is never given back.
     let mut dropped = vec![false; found.len()];
     let mut take = |among: &[usize], apart: f64| {
@@ -230,7 +230,7 @@ fn chosen_but_for(
             // A slider is another machine than a four-bar, whatever it draws. The curve of a function's follower says nothing
             // about the function.
             let draws =
-                |of: LoopKind, other: &Look<'_>| of == kind(i) && own.draws_the_curve_of(other, reach);
+                |of: LinkageKind, other: &Look<'_>| of == kind(i) && own.draws_the_curve_of(other, reach);
             dropped[i] = !problem.is_function() && taken.iter().any(|&k| draws(kind(k), &looks[k]))
                 || images.iter().any(|(of, image)| own.difference(image) < NEAR || draws(*of, image));
             if !dropped[i] {

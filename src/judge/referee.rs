@@ -19,7 +19,7 @@ use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::{step_along, wrapped};
 use crate::mechanism::four_bar::transmission::TransmissionExtremes;
 use crate::mechanism::{
-    AssemblyMode, Complex, InputArc, Joints, OnCircuit, OneLoop, bounding_box, least_and_greatest,
+    AssemblyMode, Complex, CrankLinkage, InputArc, Joints, OnCircuit, bounding_box, least_and_greatest,
 };
 use crate::task::Defect;
 use crate::task::defect::ORDER_TOLERANCE;
@@ -35,7 +35,7 @@ const MOST_CLOSURE_SAMPLES: usize = 20_000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct UsedMotion {
     /// The linkage on the circuit of the first point.
-    pub on: OnCircuit<OneLoop>,
+    pub on: OnCircuit<CrankLinkage>,
     /// The range of the circuit's parameter, low to high, at most a whole turn.
     pub range: [f64; 2],
 }
@@ -61,7 +61,7 @@ pub struct Verdict {
 /// If there are fewer angles or assemblies than points.
 pub fn judge(
     task: &Task,
-    linkage: impl Into<OneLoop>,
+    linkage: impl Into<CrankLinkage>,
     crank_angles: &[f64],
     assemblies: &[AssemblyMode],
 ) -> Verdict {

@@ -14,7 +14,7 @@
 use super::look::{Look, NEAR};
 use super::unwrapped::unwrapped;
 use crate::judge::assess::assess_again;
-use crate::mechanism::{AssemblyMode, Complex, OneLoop};
+use crate::mechanism::{AssemblyMode, Complex, CrankLinkage};
 use crate::record::Candidate;
 use crate::task::Problem;
 use crate::task::{AngleOffset, Timing};
@@ -150,7 +150,7 @@ impl Symmetry {
 }
 
 /// Returns the prescribed angles of a linkage, if the angles that it has are equal to them up to whole turns.
-fn in_step(problem: &Problem, linkage: &OneLoop, offset: AngleOffset, has: &[f64]) -> Option<Vec<f64>> {
+fn in_step(problem: &Problem, linkage: &CrankLinkage, offset: AngleOffset, has: &[f64]) -> Option<Vec<f64>> {
     let (task, written) = (problem.task(), &problem.spec().task.timing.as_ref()?.crank_deg);
     let timed = (0..has.len()).find(|j| !task.is_untimed(*j))?;
     let (first, asked) = (*has.get(timed)?, *written.get(timed)?);

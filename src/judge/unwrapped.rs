@@ -1,7 +1,7 @@
 //! Crank angles unwrapped along the motion through the points.
 
 use crate::mechanism::four_bar::mobility::{ways_round, wrapped};
-use crate::mechanism::{AssemblyMode, OneLoop};
+use crate::mechanism::{AssemblyMode, CrankLinkage};
 use crate::task::Problem;
 use crate::task::defect::ORDER_TOLERANCE;
 use std::f64::consts::TAU;
@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 /// has the first one's angle, a turn later.
 pub fn unwrapped(
     problem: &Problem,
-    linkage: impl Into<OneLoop>,
+    linkage: impl Into<CrankLinkage>,
     angles: Vec<f64>,
     mut assemblies: Vec<AssemblyMode>,
 ) -> (Vec<f64>, Vec<AssemblyMode>) {

@@ -10,7 +10,7 @@
 //! | [`effort`] | counter of linkage positions computed between two checks for a stop, in this crate's own tests; elsewhere it does nothing |
 //! | [`four_bar`] | planar four-bar linkages: parameters, position, motion, mobility, coupler curve and cognates |
 //! | [`inverted_slider_crank`] | planar inverted slider-cranks, whose coupler slides through a block at a fixed pivot |
-//! | [`one_loop`] | linkages of one loop, which synthesis finds: four-bar, slider-crank and inverted slider-crank behind one type |
+//! | [`crank_linkage`] | linkages of one loop, which synthesis finds: four-bar, slider-crank and inverted slider-crank behind one type |
 //! | [`plates`] | the links as flat plates with holes at the joints, which can be cut out |
 //! | [`slider`] | linkages of one loop with a slider: what the slider-crank and the inverted slider-crank have in common |
 //! | [`slider_crank`] | planar slider-cranks, whose coupler ends on a block that slides along a fixed line |
@@ -19,12 +19,12 @@
 pub mod analysis;
 pub mod any;
 pub mod chain;
+pub mod crank_linkage;
 pub mod dyad;
 pub mod dyad_chain;
 pub(crate) mod effort;
 pub mod four_bar;
 pub mod inverted_slider_crank;
-pub mod one_loop;
 pub mod plates;
 pub mod slider;
 pub mod slider_crank;
@@ -38,6 +38,7 @@ pub use any::{
     CrankRange, Link, Linkage, Mechanism, MechanismMotion, MechanismPose, Output, OutputRate, Slide, Status,
 };
 pub use chain::{Chain, ChainBuilder};
+pub use crank_linkage::{CrankLinkage, LinkageKeys, LinkageKind, LoopJoints, LoopMobility, NoLinkage};
 pub use dyad::{Dyad, Pose};
 pub use dyad_chain::{DyadChain, DyadChainKind};
 pub use four_bar::{
@@ -46,7 +47,6 @@ pub use four_bar::{
     Toggle, VectorLoop,
 };
 pub use inverted_slider_crank::{InvertedSliderCrank, InvertedSliderCrankParameters};
-pub use one_loop::{LinkageKeys, LoopJoints, LoopKind, LoopMobility, NoLinkage, OneLoop};
 pub use slider::{SliderJoints, SliderLinkage, SliderPosition};
 pub use slider_crank::{SliderCrank, SliderCrankParameters};
 pub use unit::Unit;

@@ -1,7 +1,7 @@
 //! Exact synthesis: every linkage through nine points, or through a mixture of poses and points that has finitely many,
 //! counted, and the real ones listed.
 
-use crate::mechanism::{AssemblyMode, LinkageType, OneLoop};
+use crate::mechanism::{AssemblyMode, CrankLinkage, LinkageType};
 use crate::numbers::nine_point::target::Kind;
 use crate::task::Defect;
 use serde::{Deserialize, Serialize};
@@ -108,7 +108,7 @@ pub struct ExactLinkage {
     /// Its rank among the candidates, 0 where it is none of them.
     pub rank: usize,
     /// The best of its mechanisms under the problem's requirements.
-    pub linkage: OneLoop,
+    pub linkage: CrankLinkage,
     /// Its crank angle at each point, degrees, unwrapped.
     pub crank_deg: Vec<f64>,
     /// Its assembly at each point.
@@ -153,7 +153,7 @@ impl ExactLinkage {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExactForm {
     /// The linkage, assembled as at the first point.
-    pub linkage: OneLoop,
+    pub linkage: CrankLinkage,
     /// Its type.
     #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
     pub linkage_type: Option<LinkageType>,

@@ -1,6 +1,6 @@
 //! Additions to a candidate's figures: warnings, the same curve by other linkages, families of answers.
 
-use crate::mechanism::{AssemblyMode, LinkageType, OneLoop};
+use crate::mechanism::{AssemblyMode, CrankLinkage, LinkageType};
 use serde::{Deserialize, Serialize};
 
 /// Why a linkage that meets every requirement may still be a poor one to build.
@@ -56,7 +56,7 @@ pub struct Warning {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Alternative {
     /// The linkage.
-    pub linkage: OneLoop,
+    pub linkage: CrankLinkage,
     /// Its crank angle at each target point, degrees, unwrapped.
     pub crank_deg: Vec<f64>,
     /// Its assembly at each target point.

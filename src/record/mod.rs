@@ -17,7 +17,7 @@
 //! | [`suite`] | the figures of a suite: problems with a known answer, many seeds each |
 //! | [`sweep`] | sweeps: many problems that are one problem with different values of some keys |
 
-use crate::mechanism::{AssemblyMode, LinkageType, OneLoop, Unit};
+use crate::mechanism::{AssemblyMode, CrankLinkage, LinkageType, Unit};
 use crate::task::ranges::{Reference, Scales};
 pub use crate::task::requirement::LimitUnit;
 use crate::task::spec::{Method, ProblemSpec, TaskSpec, TransmissionOver};
@@ -255,7 +255,7 @@ pub struct Evaluations {
 }
 
 /// Returns the type of a four-bar, of other kinds the kind.
-pub fn type_name(linkage_type: Option<LinkageType>, linkage: &OneLoop) -> &'static str {
+pub fn type_name(linkage_type: Option<LinkageType>, linkage: &CrankLinkage) -> &'static str {
     linkage_type.map_or(linkage.kind().name(), LinkageType::name)
 }
 
@@ -265,7 +265,7 @@ pub struct Candidate {
     /// 1 is the best.
     pub rank: usize,
     /// The linkage.
-    pub linkage: OneLoop,
+    pub linkage: CrankLinkage,
     /// The crank angle at each target point, degrees from the x axis, unwrapped.
     pub crank_deg: Vec<f64>,
     /// The assembly at each target point.

@@ -5,7 +5,7 @@
 //! `i` (from 0) has the values of the mixed-radix digits of `i`: the last key varies fastest. A [`Row`] is the outcome of
 //! a job.
 
-use crate::mechanism::{LinkageType, OneLoop};
+use crate::mechanism::{CrankLinkage, LinkageType};
 use crate::record::digest::{NotWritten, hex};
 use crate::record::{ErrorRecord, Reason, Record, Tool};
 use serde::{Deserialize, Serialize};
@@ -251,7 +251,7 @@ pub struct Best {
     /// The longest of ground, a, b, c, d and e.
     pub longest: f64,
     /// The linkage.
-    pub linkage: OneLoop,
+    pub linkage: CrankLinkage,
 }
 
 impl Best {

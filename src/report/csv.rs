@@ -5,7 +5,7 @@ use super::body;
 use super::scene::first_position;
 use super::text::{cell, exact, push_exact};
 use super::words;
-use crate::mechanism::{Complex, CouplerCurve, FourBar, Joints, LoopJoints, OneLoop, point};
+use crate::mechanism::{Complex, CouplerCurve, CrankLinkage, FourBar, Joints, LoopJoints, point};
 use crate::record::{Candidate, Member, Record};
 use crate::task::{Defect, TaskKind};
 
@@ -70,7 +70,7 @@ pub(super) const PARAMETERS: [Parameter; 11] = [
     ("Bx", |l| Some(l.second_pivot()?.re)),
     ("By", |l| Some(l.second_pivot()?.im)),
     ("a", |l| Some(l.crank())),
-    ("b", OneLoop::coupler),
+    ("b", CrankLinkage::coupler),
     ("c", |l| l.four_bar().map(FourBar::follower)),
     ("d", |l| Some(l.crank_side())),
     ("e", |l| l.four_bar().map(FourBar::follower_side)),
@@ -79,7 +79,7 @@ pub(super) const PARAMETERS: [Parameter; 11] = [
 ];
 
 /// A parameter of a linkage: its name and its value; `None` of a kind that has no such parameter.
-pub(super) type Parameter = Column<OneLoop, Option<f64>>;
+pub(super) type Parameter = Column<CrankLinkage, Option<f64>>;
 
 /// The parameters that only linkages with a slider have.
 pub(super) const OF_SLIDERS: [Parameter; 6] = [
@@ -92,7 +92,7 @@ pub(super) const OF_SLIDERS: [Parameter; 6] = [
 ];
 
 /// Returns the parameters that linkages of these kinds have: those of a slider only where one is among them.
-pub(super) fn parameters_of<'l>(linkages: impl IntoIterator<Item = &'l OneLoop>) -> Vec<Parameter> {
+pub(super) fn parameters_of<'l>(linkages: impl IntoIterator<Item = &'l CrankLinkage>) -> Vec<Parameter> {
     let sliders = linkages.into_iter().any(|linkage| linkage.four_bar().is_none());
     PARAMETERS.into_iter().chain(OF_SLIDERS.into_iter().filter(|_| sliders)).collect()
 }
@@ -180,7 +180,7 @@ pub(super) fn figures(candidate: &Candidate, wanted: &[&str]) -> Vec<String> {
 }
 
 /// Returns the cells of the parameters, empty where the kind has none.
-pub(super) fn parameters(columns: &[Parameter], linkage: &OneLoop) -> Vec<String> {
+pub(super) fn parameters(columns: &[Parameter], linkage: &CrankLinkage) -> Vec<String> {
     columns.iter().map(|(_, of)| of(linkage).map_or(String::new(), exact)).collect()
 }
 

@@ -1,7 +1,7 @@
 //! The words for the output of a function: the angle of a follower or of a block, or the place of a slider.
 
 use super::text::{brief, significant};
-use crate::mechanism::LoopKind;
+use crate::mechanism::LinkageKind;
 use crate::record::{Candidate, Record};
 use crate::task::Sense;
 use crate::task::spec::ProblemSpec;
@@ -14,7 +14,7 @@ pub(super) fn length_name(record: &Record) -> String {
 /// Returns the name of the output link of a function: `follower`, `block` or `slider` where all kinds that are searched for
 /// have the same, else `output`.
 pub(super) fn link(spec: &ProblemSpec) -> &'static str {
-    let links: Vec<&str> = LoopKind::ALL
+    let links: Vec<&str> = LinkageKind::ALL
         .into_iter()
         .filter(|kind| spec.design.searches(*kind))
         .map(|kind| link_of(kind, spec.task.is_of_places()))
@@ -25,12 +25,12 @@ pub(super) fn link(spec: &ProblemSpec) -> &'static str {
     }
 }
 
-fn link_of(kind: LoopKind, is_of_places: bool) -> &'static str {
+fn link_of(kind: LinkageKind, is_of_places: bool) -> &'static str {
     match (kind, is_of_places) {
-        (LoopKind::FourBar, _) => "follower",
-        (LoopKind::SliderCrank, _) => "slider",
-        (LoopKind::InvertedSliderCrank, true) => "rod",
-        (LoopKind::InvertedSliderCrank, false) => "block",
+        (LinkageKind::FourBar, _) => "follower",
+        (LinkageKind::SliderCrank, _) => "slider",
+        (LinkageKind::InvertedSliderCrank, true) => "rod",
+        (LinkageKind::InvertedSliderCrank, false) => "block",
     }
 }
 
@@ -43,10 +43,10 @@ pub(super) fn of(candidate: &Candidate) -> String {
 /// Returns the title of a chart of the outputs of a candidate.
 pub(super) fn title(candidate: &Candidate) -> &'static str {
     match (candidate.linkage.kind(), candidate.output_offset.is_some()) {
-        (LoopKind::FourBar, _) => "Follower",
-        (LoopKind::SliderCrank, _) => "Slider",
-        (LoopKind::InvertedSliderCrank, true) => "Rod",
-        (LoopKind::InvertedSliderCrank, false) => "Block",
+        (LinkageKind::FourBar, _) => "Follower",
+        (LinkageKind::SliderCrank, _) => "Slider",
+        (LinkageKind::InvertedSliderCrank, true) => "Rod",
+        (LinkageKind::InvertedSliderCrank, false) => "Block",
     }
 }
 
@@ -83,7 +83,7 @@ fn offsets_of_places(candidate: &Candidate, place: f64, unit: &str) -> String {
     let place = significant(place, 6);
     let is_opposite = candidate.sense == Some(Sense::Opposite);
     match candidate.linkage.kind() {
-        LoopKind::InvertedSliderCrank => {
+        LinkageKind::InvertedSliderCrank => {
             let way = if is_opposite { "from the pin C back" } else { "from the pin C" };
             format!(
                 "the crank from {input}° off the line A-B, the block from {place}{unit} along the rod {way}"
@@ -103,8 +103,8 @@ fn offsets_of_places(candidate: &Candidate, place: f64, unit: &str) -> String {
 pub(super) fn starts_from(candidate: &Candidate, unit: &str) -> Option<String> {
     if let Some(place) = candidate.output_offset {
         let way = match (candidate.linkage.kind(), candidate.sense? == Sense::Opposite) {
-            (LoopKind::InvertedSliderCrank, false) => "block from C along the rod",
-            (LoopKind::InvertedSliderCrank, true) => "block from C back along the rod",
+            (LinkageKind::InvertedSliderCrank, false) => "block from C along the rod",
+            (LinkageKind::InvertedSliderCrank, true) => "block from C back along the rod",
             (_, false) => "slider along its line",
             (_, true) => "slider against its line",
         };

@@ -10,7 +10,7 @@ use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
 use crate::judge::practicality::sweep::Stretch;
 use crate::judge::practicality::{Build, Closest, Joint, Practicality};
 use crate::mechanism::plates::{Link, Parts};
-use crate::mechanism::{LoopKind, Unit};
+use crate::mechanism::{LinkageKind, Unit};
 use crate::task::{Output, TaskKind};
 
 /// The number of significant digits of lengths and rates.
@@ -45,7 +45,7 @@ pub fn practicality_text(
     let moved = match (practicality.output, practicality.sweep.linkage.kind()) {
         (None, _) => "moves the path",
         (Some(Output::Place), _) => "moves the slider",
-        (Some(Output::Angle), LoopKind::FourBar) => "turns the follower",
+        (Some(Output::Angle), LinkageKind::FourBar) => "turns the follower",
         (Some(Output::Angle), _) => "turns the block",
     };
     out.push_str(&words.head(&format!("How much a wrong dimension {moved}")));

@@ -3,7 +3,7 @@
 use super::guide::Sliding;
 use super::{body, function};
 use crate::mechanism::{
-    AssemblyMode, Complex, CouplerCurve, Joints, LoopJoints, MAX_MAGNITUDE, OneLoop, dot, point,
+    AssemblyMode, Complex, CouplerCurve, CrankLinkage, Joints, LoopJoints, MAX_MAGNITUDE, dot, point,
 };
 use crate::record::{Candidate, Record};
 use crate::task::spec::TaskSpec;
@@ -38,7 +38,7 @@ pub(super) struct Pose {
 /// A candidate, ready to be drawn. Without a candidate, the target alone.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scene {
-    pub(super) linkage: Option<OneLoop>,
+    pub(super) linkage: Option<CrankLinkage>,
     pub(super) targets: Vec<Target>,
     /// The joints along each circuit used, the first point's circuit first.
     pub(super) circuits: Vec<Vec<Joints>>,
@@ -67,7 +67,7 @@ impl Scene {
     /// each circuit. The body of a motion lies at `frame_deg` from the direction C -> D.
     pub(super) fn of(
         record: &Record,
-        linkage: &OneLoop,
+        linkage: &CrankLinkage,
         positions: &[(f64, AssemblyMode)],
         frame_deg: Option<f64>,
         samples: usize,
@@ -105,7 +105,7 @@ impl Scene {
     /// Returns the box of everything, over the whole motion.
     pub(super) fn bounds(&self) -> Bounds {
         let mut bounds = self.curve_bounds();
-        let pivots = self.linkage.iter().flat_map(OneLoop::pivots);
+        let pivots = self.linkage.iter().flat_map(CrankLinkage::pivots);
         let pins = self.circuits.iter().flatten().flat_map(|joints| [joints.crank_pin, joints.follower_pin]);
         pivots.chain(pins).for_each(|p| bounds.hold(p));
         if let Some(sliding) = self.pose.as_ref().and_then(|pose| Sliding::of(self, pose)) {
@@ -160,19 +160,19 @@ fn output_pin(candidate: &Candidate) -> Option<Box<dyn Fn(f64) -> Complex + '_>>
     let sign = candidate.sense?.signs()[0];
     let (pivot, ground_angle) = (candidate.linkage.crank_pivot(), candidate.linkage.ground_angle());
     match &candidate.linkage {
-        OneLoop::FourBar(linkage) => {
+        CrankLinkage::FourBar(linkage) => {
             let offset = candidate.output_offset_deg?;
             Some(Box::new(move |output| {
                 let angle = ground_angle + (offset + sign * output).to_radians();
                 linkage.follower_pivot() + Complex::from_polar(linkage.follower(), angle)
             }))
         }
-        OneLoop::SliderCrank(linkage) => {
+        CrankLinkage::SliderCrank(linkage) => {
             let (offset, along) = (candidate.output_offset?, linkage.line_direction());
             let foot = linkage.line_point() + along * dot(pivot - linkage.line_point(), along);
             Some(Box::new(move |output| foot + along * (sign * (offset + output))))
         }
-        OneLoop::InvertedSliderCrank(_) => None,
+        CrankLinkage::InvertedSliderCrank(_) => None,
     }
 }
 
@@ -190,14 +190,14 @@ pub(super) fn first_position(candidate: &Candidate) -> (f64, AssemblyMode) {
     first_of(&candidate.linkage, &positions(candidate))
 }
 
-fn first_of(linkage: &OneLoop, positions: &[(f64, AssemblyMode)]) -> (f64, AssemblyMode) {
+fn first_of(linkage: &CrankLinkage, positions: &[(f64, AssemblyMode)]) -> (f64, AssemblyMode) {
     let first = positions.first().copied().filter(|(angle, _)| angle.is_finite());
     first.unwrap_or_else(|| middle_position(linkage))
 }
 
 /// Returns a position in the middle of the input's range; if the loop does not determine the follower there (C on B, as
 /// in a rhombus at one crank angle), the nearest of several others at which the linkage can be assembled.
-pub(crate) fn middle_position(linkage: impl Into<OneLoop>) -> (f64, AssemblyMode) {
+pub(crate) fn middle_position(linkage: impl Into<CrankLinkage>) -> (f64, AssemblyMode) {
     /// Offsets from the middle, as fractions of a half turn or of half the arc.
     const ASIDE: [f64; 9] = [0.0, 1.0 / 3.0, -1.0 / 3.0, 0.5, -0.5, 2.0 / 3.0, -2.0 / 3.0, 0.1, -0.1];
     let linkage = linkage.into();
@@ -214,14 +214,18 @@ pub(super) fn circuits(candidate: &Candidate, samples: usize) -> Vec<Vec<Joints>
     circuits_of(&candidate.linkage, &positions(candidate), samples)
 }
 
-fn circuits_of(linkage: &OneLoop, positions: &[(f64, AssemblyMode)], samples: usize) -> Vec<Vec<Joints>> {
+fn circuits_of(
+    linkage: &CrankLinkage,
+    positions: &[(f64, AssemblyMode)],
+    samples: usize,
+) -> Vec<Vec<Joints>> {
     let all = std::iter::once(first_of(linkage, positions)).chain(positions.iter().copied());
     circuits_through(linkage, all, samples)
 }
 
 /// Returns the joints along every circuit that contains one of the positions (crank angle in radians, assembly).
 pub(crate) fn circuits_through(
-    linkage: impl Into<OneLoop>,
+    linkage: impl Into<CrankLinkage>,
     positions: impl IntoIterator<Item = (f64, AssemblyMode)>,
     samples: usize,
 ) -> Vec<Vec<Joints>> {
@@ -231,7 +235,7 @@ pub(crate) fn circuits_through(
 
 /// Returns the positions along every circuit that contains one of the positions (crank angle in radians, assembly).
 pub(super) fn positions_through(
-    linkage: impl Into<OneLoop>,
+    linkage: impl Into<CrankLinkage>,
     positions: impl IntoIterator<Item = (f64, AssemblyMode)>,
     samples: usize,
 ) -> Vec<Vec<LoopJoints>> {
@@ -264,7 +268,7 @@ pub(super) fn positions_through(
 
 /// Returns the position at the first target point, or, if that is hard to read (joints close together), the one at
 /// which the closest two joints are farthest apart.
-fn legible_pose(linkage: &OneLoop, positions: &[(f64, AssemblyMode)]) -> Option<Pose> {
+fn legible_pose(linkage: &CrankLinkage, positions: &[(f64, AssemblyMode)]) -> Option<Pose> {
     /// The fraction of the best spacing down to which the first point is kept.
     const GOOD_ENOUGH: f64 = 0.6;
     let poses: Vec<(Pose, f64)> = positions
@@ -291,7 +295,7 @@ pub(super) fn closest(all: &[Complex]) -> f64 {
 }
 
 /// Returns A, B, C, D, P of a linkage at a position; for B of a slider-crank D.
-pub(super) fn all_joints(linkage: impl Into<OneLoop>, joints: &Joints) -> [Complex; 5] {
+pub(super) fn all_joints(linkage: impl Into<CrankLinkage>, joints: &Joints) -> [Complex; 5] {
     let Joints { crank_pin, follower_pin, coupler_point } = *joints;
     let linkage = linkage.into();
     let second = linkage.second_pivot().unwrap_or(follower_pin);

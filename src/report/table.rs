@@ -7,7 +7,7 @@ use super::text::{
     COLUMNS, NO_NUMBER, brief, clean, exact, grouped, indented, shortened, significant, wrapped,
 };
 use super::{output, price, words};
-use crate::mechanism::{LoopKind, OneLoop, Unit};
+use crate::mechanism::{CrankLinkage, LinkageKind, Unit};
 use crate::record::{AngleErrorRecord, Candidate, ErrorRecord, Record};
 use crate::task::spec::{Measure, ProblemSpec, TaskSpec};
 use crate::task::{Defect, TaskKind};
@@ -263,7 +263,7 @@ fn columns(record: &Record) -> &'static str {
                 perpendicular from A on its line; of an inverted slider-crank the block's along the rod from C. transm.: the \
                 worst transmission angle, from 0 to 90°, over the crank's full turn (cycle) or between the pairs (used).";
     }
-    if record.problem.resolved.design.searches(LoopKind::InvertedSliderCrank)
+    if record.problem.resolved.design.searches(LinkageKind::InvertedSliderCrank)
         && record.problem.resolved.task.is_function()
     {
         return "rms, max: errors of the angle of the follower, or of the block, degrees, at which pair (from 0) the largest. \
@@ -344,12 +344,12 @@ pub(super) fn motion(candidate: &Candidate) -> Option<String> {
 }
 
 /// Returns the linkage as an inline table of TOML, to the last digit.
-fn linkage_toml(linkage: &OneLoop) -> String {
+fn linkage_toml(linkage: &CrankLinkage) -> String {
     // A tilde is a space at which no line is broken.
     let pair = |[x, y]: [f64; 2]| format!("[{},~{}]", exact(x), exact(y));
     let t1 = i64::from(linkage.assembly());
     let (table, parts) = match linkage {
-        OneLoop::FourBar(linkage) => {
+        CrankLinkage::FourBar(linkage) => {
             let p = linkage.natural_coordinates();
             let lengths = [p.crank, p.coupler, p.follower, p.crank_side, p.follower_side].map(exact);
             let ([a, b, c, d, e], t2) = (lengths, i64::from(p.side));
@@ -357,7 +357,7 @@ fn linkage_toml(linkage: &OneLoop) -> String {
             let lengths = format!("a~=~{a}, b~=~{b}, c~=~{c}, d~=~{d}, e~=~{e}");
             ("linkage", format!("A~=~{pivot}, B~=~{other}, {lengths}, t1~=~{t1}, t2~=~{t2}~}}"))
         }
-        OneLoop::SliderCrank(linkage) => {
+        CrankLinkage::SliderCrank(linkage) => {
             let p = linkage.parameters();
             let [a, b, deg, x, y] = [p.crank, p.coupler, p.line_deg, p.coupler_x, p.coupler_y].map(exact);
             let (pivot, line) = (pair(p.crank_pivot), pair(p.line_point));
@@ -365,7 +365,7 @@ fn linkage_toml(linkage: &OneLoop) -> String {
             let p = format!("coupler_x~=~{x}, coupler_y~=~{y}");
             ("slider_crank", format!("A~=~{pivot}, a~=~{a}, b~=~{b}, {line}, {p}, t1~=~{t1}~}}"))
         }
-        OneLoop::InvertedSliderCrank(linkage) => {
+        CrankLinkage::InvertedSliderCrank(linkage) => {
             let p = linkage.parameters();
             let [a, offset, x, y] = [p.crank, p.offset, p.coupler_x, p.coupler_y].map(exact);
             let (pivot, block) = (pair(p.crank_pivot), pair(p.block_pivot));

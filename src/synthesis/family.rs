@@ -6,7 +6,7 @@
 //! asked for is raised step by step and the linkage fitted again, for as long as it stays exact; then the step is halved.
 
 use crate::judge::rank::{chosen, exact_cost, searched, sort};
-use crate::mechanism::LoopKind;
+use crate::mechanism::LinkageKind;
 use crate::record::{Axis, Candidate};
 use crate::synthesis::Context;
 use crate::synthesis::constants::motion::{CLIMB_DEG, CLIMB_LEAST_DEG, CLIMBED};
@@ -33,11 +33,11 @@ pub(super) fn freedom(problem: &Problem) -> usize {
 }
 
 /// As [`freedom`] of a linkage with a slider, whose unknowns have these bounds.
-pub(super) fn freedom_within(problem: &Problem, kind: LoopKind, bounds: &[(f64, f64)]) -> usize {
+pub(super) fn freedom_within(problem: &Problem, kind: LinkageKind, bounds: &[(f64, f64)]) -> usize {
     let free = bounds.iter().filter(|(low, high)| low < high).count();
     if let Some(outputs) = problem.task().body().filter(|_| problem.is_function()) {
         let pairs = problem.task().len();
-        if kind != LoopKind::InvertedSliderCrank || !outputs.is_of_places() {
+        if kind != LinkageKind::InvertedSliderCrank || !outputs.is_of_places() {
             return free.saturating_sub(pairs);
         }
         // The place of the block depends on a g and g^2 + a^2 - h^2 alone.

@@ -5,7 +5,7 @@ use super::{Budget, Context};
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, InputRange, LoopJoints, OneLoop};
+use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, CrankLinkage, FourBar, InputRange, LoopJoints};
 use crate::task::forms::design_space::Shape;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::timed::TimedPathFit;
@@ -23,7 +23,7 @@ use std::sync::atomic::AtomicBool;
 /// Partly timed targets are met by four-bars alone.
 pub fn nearest_positions(
     problem: &Problem,
-    linkage: impl Into<OneLoop>,
+    linkage: impl Into<CrankLinkage>,
 ) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let linkage = &linkage.into();
     match problem.task().timing() {
@@ -99,7 +99,7 @@ fn partly_timed(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<A
 }
 
 /// Returns a crank angle on each circuit that the linkage's own t1 can be on.
-fn on_circuits(linkage: &OneLoop) -> Vec<f64> {
+fn on_circuits(linkage: &CrankLinkage) -> Vec<f64> {
     match linkage.mobility().input {
         InputRange::None => Vec::new(),
         InputRange::Full => vec![linkage.ground_angle()],
@@ -118,7 +118,7 @@ struct Sample {
 }
 
 impl Sample {
-    fn of(linkage: &OneLoop, curve: &CouplerCurve<OneLoop>, parameter: f64) -> Option<Sample> {
+    fn of(linkage: &CrankLinkage, curve: &CouplerCurve<CrankLinkage>, parameter: f64) -> Option<Sample> {
         let (angle, assembly) = curve.position_at(parameter);
         let LoopJoints { joints, coupler } = linkage.joints_with(angle, assembly)?;
         Some(Sample { parameter, point: joints.coupler_point, direction: coupler.arg() })
@@ -140,7 +140,7 @@ const TRIED: usize = 48;
 
 /// As [`free`] for a body that is fixed to the coupler in the way that gives the least errors: at several places of the
 /// circuit the body is taken to lie as at the first target with an angle; the best of these is fitted.
-fn of_body(problem: &Problem, linkage: &OneLoop) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+fn of_body(problem: &Problem, linkage: &CrankLinkage) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let task = problem.task();
     let first = task.body()?.angles.iter().flatten().next()?;
     let mut best: Option<(f64, f64, f64, Vec<f64>)> = None;
@@ -193,8 +193,8 @@ const SETTLED: f64 = 1e-13;
 /// angles there, in turn.
 fn led_along(
     problem: &Problem,
-    linkage: &OneLoop,
-    curve: &CouplerCurve<OneLoop>,
+    linkage: &CrankLinkage,
+    curve: &CouplerCurve<CrankLinkage>,
     mut frame: f64,
     mut parameters: Vec<f64>,
 ) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
@@ -230,7 +230,7 @@ fn led_along(
 /// A search that nothing cancels.
 static NEVER: AtomicBool = AtomicBool::new(false);
 
-fn free(problem: &Problem, linkage: &OneLoop) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+fn free(problem: &Problem, linkage: &CrankLinkage) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let on_circuit = |start: f64| {
         let curve = CouplerCurve::through(linkage, start, linkage.assembly(), DEFAULT_SAMPLES);
         let mut sum = 0.0;
@@ -262,7 +262,7 @@ const THIRDS: usize = 100;
 
 fn prescribed(
     problem: &Problem,
-    linkage: &OneLoop,
+    linkage: &CrankLinkage,
     offset: AngleOffset,
 ) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let written = &problem.spec().task.timing.as_ref()?.crank_deg;
@@ -304,7 +304,7 @@ impl Placed {
 /// A linkage at prescribed crank angles.
 struct Prescribed<'a> {
     problem: &'a Problem,
-    linkage: &'a OneLoop,
+    linkage: &'a CrankLinkage,
     written: &'a [f64],
     assemblies: Vec<AssemblyMode>,
     /// The angle that is added to those written, degrees; `None`: any.

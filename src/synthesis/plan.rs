@@ -17,7 +17,7 @@ use super::sliders::Sliders;
 use super::{Context, Progress, SearchOutcome, continuation, local, relaxed};
 use crate::judge::assess::{assess, assess_again};
 use crate::judge::rank::{divided, exact_cost, searched};
-use crate::mechanism::{Complex, LoopKind};
+use crate::mechanism::{Complex, LinkageKind};
 use crate::numbers::optimise::population::PopulationError;
 use crate::record::{Candidate, Evaluations, RELAXED, Reason};
 use crate::task::forms::start::Start;
@@ -58,7 +58,7 @@ pub fn approximate(context: Context<'_>) -> Result<SearchOutcome, PopulationErro
     }
     let limit = context.problem.spec().solve.evaluations;
     let Some(mut sliders) = Sliders::of(context, &design.mechanism) else { return four_bars(context) };
-    if !design.searches(LoopKind::FourBar) {
+    if !design.searches(LinkageKind::FourBar) {
         let allowance = Allowance { limit, patience: limit };
         return Ok(ranked(context, sliders.search(context, allowance)));
     }

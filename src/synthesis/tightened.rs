@@ -7,7 +7,7 @@ use super::polish::{finish, reserve};
 use super::{Context, plan, sliders};
 use crate::judge::assess::assess_again;
 use crate::judge::warm::start_at;
-use crate::mechanism::LoopKind;
+use crate::mechanism::LinkageKind;
 use crate::record::{Axis, Candidate, Figures};
 use crate::task::Problem;
 use crate::task::spec::{Method, Objective};
@@ -131,7 +131,7 @@ pub(super) fn fitted(
         return out;
     }
     let within = context.of(tight).silent();
-    if from.linkage.kind() != LoopKind::FourBar {
+    if from.linkage.kind() != LinkageKind::FourBar {
         let effort = (effort, evaluations.min(EVALUATIONS), enough);
         let (end, evaluations) = sliders::refit(within, from, effort);
         let candidate = end.and_then(|end| assess_again(context.problem, &end));

@@ -5,7 +5,7 @@
 
 use super::targets::{AngleOffset, SMALLEST_SIZE, TaskError};
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{Complex, LoopJoints, LoopKind, MAX_MAGNITUDE, OneLoop};
+use crate::mechanism::{Complex, CrankLinkage, LinkageKind, LoopJoints, MAX_MAGNITUDE};
 use crate::task::ranges::Ranges;
 
 /// The sense in which the follower turns while the crank turns as its angles are written.
@@ -52,10 +52,10 @@ pub enum Output {
 
 impl Output {
     /// Returns whether linkages of a kind have such an output.
-    pub fn is_of(self, kind: LoopKind) -> bool {
+    pub fn is_of(self, kind: LinkageKind) -> bool {
         match self {
-            Output::Angle => kind != LoopKind::SliderCrank,
-            Output::Place => kind != LoopKind::FourBar,
+            Output::Angle => kind != LinkageKind::SliderCrank,
+            Output::Place => kind != LinkageKind::FourBar,
         }
     }
 
@@ -163,7 +163,7 @@ impl Body {
 
     /// Returns the measure of the link that is wanted at a position of a linkage, in the radians of `angles`: the direction of
     /// the coupler or of the output link, or the place of a slider. `None` if the linkage has none.
-    pub fn measured(&self, linkage: &OneLoop, at: &LoopJoints) -> Option<f64> {
+    pub fn measured(&self, linkage: &CrankLinkage, at: &LoopJoints) -> Option<f64> {
         match self.link {
             Link::Coupler => Some(at.coupler.arg()),
             Link::Output { output: Output::Angle, .. } => linkage.output_angle(at),

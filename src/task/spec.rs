@@ -3,7 +3,7 @@
 //! It is written as `problem.resolved` in a record, and a run starts from it; a problem file, a library caller and
 //! `verify` all lead to it. Angles in degrees, lengths in the file's unit.
 
-use crate::mechanism::{LoopKind, MAX_MAGNITUDE};
+use crate::mechanism::{LinkageKind, MAX_MAGNITUDE};
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
 use crate::task::Task;
@@ -62,7 +62,7 @@ impl ProblemSpec {
 pub struct DesignSpec {
     /// The kinds of linkages that are searched for, sorted; empty: four-bars alone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub mechanism: Vec<LoopKind>,
+    pub mechanism: Vec<LinkageKind>,
     /// The crank's pivot.
     #[serde(rename = "A", default, skip_serializing_if = "Option::is_none")]
     pub crank_pivot: Option<[Limits; 2]>,
@@ -114,13 +114,13 @@ pub const FUNCTION_RATIOS: [f64; 2] = [0.1, 10.0];
 
 impl DesignSpec {
     /// Returns whether linkages of a kind are searched for.
-    pub fn searches(&self, kind: LoopKind) -> bool {
-        if self.mechanism.is_empty() { kind == LoopKind::FourBar } else { self.mechanism.contains(&kind) }
+    pub fn searches(&self, kind: LinkageKind) -> bool {
+        if self.mechanism.is_empty() { kind == LinkageKind::FourBar } else { self.mechanism.contains(&kind) }
     }
 
     /// Returns whether four-bars alone are searched for.
     pub fn is_of_four_bars(&self) -> bool {
-        self.mechanism.iter().all(|kind| *kind == LoopKind::FourBar)
+        self.mechanism.iter().all(|kind| *kind == LinkageKind::FourBar)
     }
 
     /// Returns the length of the ground link that a function is scaled to: |AB| of the pivots given, the greatest ground
@@ -175,10 +175,10 @@ impl DesignSpec {
         for key in [&mut self.a, &mut self.b] {
             key.get_or_insert(Limits(low, high));
         }
-        if self.searches(LoopKind::SliderCrank) {
+        if self.searches(LinkageKind::SliderCrank) {
             self.line_deg.get_or_insert(fixed(0.0));
         }
-        if self.searches(LoopKind::InvertedSliderCrank) {
+        if self.searches(LinkageKind::InvertedSliderCrank) {
             let Limits(least, most) = self.ground.unwrap_or(Limits(low, high));
             self.follower_pivot.get_or_insert([Limits(x.0 + least, x.1 + most), y]);
         }

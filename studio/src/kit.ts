@@ -5,7 +5,7 @@ import type { AnglesPlayer } from "./angles";
 import type { Board } from "./board";
 import type { BuildPanel } from "./build";
 import type { Example } from "./examples";
-import type { Answer, LoopKind, Point, Task } from "./messages";
+import type { Answer, LinkageKind, Point, Task } from "./messages";
 import type { Grip } from "./pointers";
 import type { How } from "./store";
 import type { Hand, Tool } from "./surface";
@@ -46,7 +46,7 @@ export interface Kit {
   fill(task: Task): void;
   answered(answer: Answer): void;
   /** Asks for other kinds of linkages. */
-  ofKinds(kinds: LoopKind[]): void;
+  ofKinds(kinds: LinkageKind[]): void;
   /** The task with the outline of its body. */
   outlined(task: Task, outline: Point[]): Task;
   example(name: string): Example;

@@ -5,7 +5,7 @@ import type {
   Ask as AnyAsk,
   Counted,
   Kind,
-  LoopKind,
+  LinkageKind,
   Reading,
   Relaxation,
   Shown,
@@ -13,7 +13,7 @@ import type {
   Unit,
 } from "./wire";
 
-export type { Answer, AnyAsk, Counted, Kind, LoopKind, Reading, Relaxation, Shown, Unit };
+export type { Answer, AnyAsk, Counted, Kind, LinkageKind, Reading, Relaxation, Shown, Unit };
 export type Value = TypedValue;
 
 export type Point = [number, number];

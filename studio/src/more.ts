@@ -7,7 +7,7 @@ import { BuildPanel } from "./build";
 import type { Example } from "./examples";
 import { Graph } from "./graph";
 import type { Kit, Page } from "./kit";
-import type { Answer, LoopKind, Point, Task } from "./messages";
+import type { Answer, LinkageKind, Point, Task } from "./messages";
 import { centred, Motion } from "./motion";
 import { sights } from "./sights";
 import { ofKinds, Slides } from "./slides";
@@ -85,7 +85,7 @@ class Second implements Kit {
     this.slides.fill(task);
   }
 
-  ofKinds(kinds: LoopKind[]) {
+  ofKinds(kinds: LinkageKind[]) {
     this.page.replace(ofKinds(this.page.task(), kinds));
   }
 

@@ -3,7 +3,7 @@
 import { KINDS } from "./boxes";
 import { byId, input } from "./ids";
 import { unitAfter } from "./labels";
-import type { Box, LoopKind, Task, Unit } from "./messages";
+import type { Box, LinkageKind, Task, Unit } from "./messages";
 import { nameFault } from "./names";
 import {
   boxOf,
@@ -45,7 +45,7 @@ const TYPES: Record<string, Task["types"]> = {
   rocking: ["double-rocker", "triple-rocker", "rocker-crank"],
 };
 
-const KINDS_OF_LINKAGES: LoopKind[] = ["four-bar", "slider-crank", "inverted-slider-crank"];
+const KINDS_OF_LINKAGES: LinkageKind[] = ["four-bar", "slider-crank", "inverted-slider-crank"];
 
 const SIDES = ["left", "bottom", "right", "top"];
 const BOXES = [
@@ -77,7 +77,7 @@ export interface Asking {
   now(): Task;
   change(task: Task): void;
   /** Other kinds of linkages are asked for. */
-  ofKinds(kinds: LoopKind[]): void;
+  ofKinds(kinds: LinkageKind[]): void;
   /** A box has come: it is brought into view. */
   shown(): void;
   isWalker(): boolean;
@@ -148,7 +148,7 @@ export function listenToRequirements({ now, change, ofKinds, shown, isWalker, st
   }
   on("kind", () => {
     const kind = select("kind").value;
-    ofKinds(kind === "all" ? KINDS_OF_LINKAGES : ([kind] as LoopKind[]));
+    ofKinds(kind === "all" ? KINDS_OF_LINKAGES : ([kind] as LinkageKind[]));
     return null;
   });
   on("type", () => ({ ...now(), types: TYPES[select("type").value] ?? now().types }));

@@ -4,7 +4,7 @@ import { element } from "../../src/report/html/player/svg.mjs";
 import { byId } from "./ids";
 import type { Page } from "./kit";
 import { labelOf } from "./labels";
-import type { LoopKind, Task } from "./messages";
+import type { LinkageKind, Task } from "./messages";
 
 /** The numbers that a slider-crank's slider has to keep: their fields, with the keys that ask for them. */
 const NUMBERS = [
@@ -22,7 +22,7 @@ const OF_RAILS = ["design.line_deg", "design.line_point"];
 const MOTOR: Task["types"] = ["crank-rocker", "double-crank"];
 
 /** The same task for other kinds of linkages: a crank that is to turn fully stays so, and what other kinds have not goes. */
-export function ofKinds(task: Task, kinds: LoopKind[]): Task {
+export function ofKinds(task: Task, kinds: LinkageKind[]): Task {
   const { stroke, time_ratio, input: _, kept, ...rest } = task;
   const turns = task.input === "full-turn" || (task.types.length > 0 && task.types.every((one) => MOTOR.includes(one)));
   const mechanism = kinds.join() === "four-bar" ? undefined : kinds;

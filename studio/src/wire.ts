@@ -11,7 +11,7 @@ export type DriveKind = "turn" | "rock" | "through" | "none";
 /**
  * The kinds of linkages of one loop.
  */
-export type LoopKind = "four-bar" | "slider-crank" | "inverted-slider-crank";
+export type LinkageKind = "four-bar" | "slider-crank" | "inverted-slider-crank";
 /**
  * The sense in which the follower turns while the crank turns as its angles are written.
  */
@@ -166,12 +166,12 @@ export interface Wire {
   Limits: Limits;
   LinkageAsk: LinkageAsk;
   LinkageType: LinkageType;
-  LoopKind: LoopKind;
+  LinkageKind: LinkageKind;
   Method: Method;
   Objective: Objective;
   OfJob: OfJob;
-  OneLoop: OneLoop;
-  OneLoop2: OneLoop2;
+  CrankLinkage: CrankLinkage;
+  CrankLinkage2: CrankLinkage2;
   OnePolicy: OnePolicy;
   Opened: Opened;
   OrderPolicy: OrderPolicy;
@@ -268,7 +268,7 @@ export interface Shown {
    * Longest over shortest link.
    */
   link_ratio: number;
-  linkage: OneLoop2;
+  linkage: CrankLinkage2;
   /**
    * The largest error.
    */
@@ -332,7 +332,7 @@ export interface Drive {
 /**
  * A linkage by its keys, which may be no linkage: every key of every kind.
  */
-export interface OneLoop2 {
+export interface CrankLinkage2 {
   /**
    * The fixed pivot of the crank.
    *
@@ -375,7 +375,7 @@ export interface OneLoop2 {
    * |DP| of a four-bar.
    */
   e?: number;
-  kind?: LoopKind;
+  kind?: LinkageKind;
   /**
    * The direction of a slider-crank's line from the x axis, degrees.
    */
@@ -506,7 +506,7 @@ export interface Ask {
    * The target has nothing to do with the one before: nothing is to follow it.
    */
   fresh?: boolean;
-  from?: OneLoop;
+  from?: CrankLinkage;
   function?: FunctionAsk;
   /**
    * The number of a linkage that stays among the answers while it can follow the hand.
@@ -530,7 +530,7 @@ export interface Ask {
   /**
    * The kinds of linkages that are searched for; empty: four-bars.
    */
-  mechanism?: LoopKind[];
+  mechanism?: LinkageKind[];
   method?: Method;
   /**
    * The hand is still moving: the search waits until it rests.
@@ -721,7 +721,7 @@ export interface Published {
 /**
  * A linkage by its keys, which may be no linkage: every key of every kind.
  */
-export interface OneLoop {
+export interface CrankLinkage {
   /**
    * The fixed pivot of the crank.
    *
@@ -764,7 +764,7 @@ export interface OneLoop {
    * |DP| of a four-bar.
    */
   e?: number;
-  kind?: LoopKind;
+  kind?: LinkageKind;
   /**
    * The direction of a slider-crank's line from the x axis, degrees.
    */
@@ -916,7 +916,7 @@ export interface Drawn {
    * The crank angle at each target point, degrees.
    */
   crank_deg: number[];
-  linkage: OneLoop;
+  linkage: CrankLinkage;
   /**
    * The assembly (1 or -1) at each point.
    */
@@ -1012,7 +1012,7 @@ export interface ComparedRow {
    */
   frame_deg?: number;
   label: string;
-  linkage: OneLoop2;
+  linkage: CrankLinkage2;
   /**
    * The point with the largest error.
    */
@@ -1278,13 +1278,13 @@ export interface JobResult {
  */
 export interface JudgeAsk {
   ask: Ask;
-  linkage: OneLoop;
+  linkage: CrankLinkage;
 }
 /**
  * A linkage to be written as a file.
  */
 export interface LinkageAsk {
-  linkage: OneLoop;
+  linkage: CrankLinkage;
   /**
    * Its name.
    */

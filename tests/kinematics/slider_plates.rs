@@ -7,14 +7,14 @@ use linkwright::internals::judge::practicality::sensitivity::{Crank, along, sens
 use linkwright::internals::judge::practicality::{Build, Closest, Joint, Sweep};
 use linkwright::internals::mechanism::plates::Link;
 use linkwright::internals::mechanism::{
-    AssemblyMode, Complex, InvertedSliderCrank, InvertedSliderCrankParameters, LoopJoints, OneLoop,
+    AssemblyMode, Complex, CrankLinkage, InvertedSliderCrank, InvertedSliderCrankParameters, LoopJoints,
     SliderCrank, SliderCrankParameters, SliderLinkage,
 };
 use linkwright::internals::numbers::arithmetic::streams::{stream, uniform};
 
 /// Linkages of both kinds in turn whose crank turns fully.
-fn linkages(seed: u64, count: u64) -> Vec<OneLoop> {
-    let draw = |i: u64| -> OneLoop {
+fn linkages(seed: u64, count: u64) -> Vec<CrankLinkage> {
+    let draw = |i: u64| -> CrankLinkage {
         let draws = &mut stream(seed, i);
         let assembly = AssemblyMode::of(uniform(draws, -1.0, 1.0));
         let (a, x, y) = (uniform(draws, 0.5, 2.0), uniform(draws, -4.0, 8.0), uniform(draws, 1.0, 4.0));
@@ -121,7 +121,7 @@ fn least_distances_of_a_slider_crank_are_those_of_its_closed_forms() {
 }
 
 /// The slider-crank with errors of its eight dimensions; the rail moves at two places of D.
-fn slider_crank_with(l: &SliderCrank, [low, high]: [f64; 2], e: &[f64]) -> OneLoop {
+fn slider_crank_with(l: &SliderCrank, [low, high]: [f64; 2], e: &[f64]) -> CrankLinkage {
     let p = l.parameters();
     let (line, across) = (l.line_direction(), l.line_direction() * Complex::i());
     let from = l.line_point() + line * low + across * e[4];
@@ -144,7 +144,7 @@ fn slider_crank_with(l: &SliderCrank, [low, high]: [f64; 2], e: &[f64]) -> OneLo
 }
 
 /// The inverted slider-crank with errors of its eight dimensions.
-fn inverted_with(l: &InvertedSliderCrank, e: &[f64]) -> OneLoop {
+fn inverted_with(l: &InvertedSliderCrank, e: &[f64]) -> CrankLinkage {
     let p = l.parameters();
     InvertedSliderCrank::new(InvertedSliderCrankParameters {
         crank_pivot: [p.crank_pivot[0] + e[0], p.crank_pivot[1] + e[1]],
@@ -164,7 +164,7 @@ fn a_dimension_of_a_slider_shifts_the_path_as_a_linkage_with_that_error() {
     for (i, linkage) in linkages(53, 30).into_iter().enumerate() {
         let sweep = Sweep::of_linkage(linkage).expect("joined");
         let at = along(&sweep, 14);
-        let place = |l: &OneLoop, k: usize| {
+        let place = |l: &CrankLinkage, k: usize| {
             l.joints_with(at[k].crank_angle, at[k].assembly).expect("it closes").joints
         };
         let found = sensitivity(linkage, &at, Crank::Stays).expect("derivatives");

@@ -6,7 +6,7 @@ use crate::motion::solved;
 use linkwright::internals::judge::practicality::sensitivity::{At, Crank, output_sensitivity};
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::mechanism::{
-    AssemblyMode, Complex, InvertedSliderCrank, LoopKind, OneLoop, SliderCrank,
+    AssemblyMode, Complex, CrankLinkage, InvertedSliderCrank, LinkageKind, SliderCrank,
 };
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
 use linkwright::internals::record::Candidate;
@@ -17,23 +17,23 @@ use linkwright::internals::task::Output;
 use std::f64::consts::PI;
 
 /// Draws a linkage of a kind whose crank turns fully with a transmission angle of 5 degrees at least.
-fn drawn(kind: LoopKind, draws: &mut Stream) -> OneLoop {
+fn drawn(kind: LinkageKind, draws: &mut Stream) -> CrankLinkage {
     loop {
         let pivot = Complex::new(uniform(draws, -2.0, 2.0), uniform(draws, -2.0, 2.0));
         let turn = Complex::from_polar(1.0, uniform(draws, -PI, PI));
         let (crank, offset) = (uniform(draws, 0.3, 2.0), uniform(draws, -1.5, 1.5));
         let point = Complex::new(0.0, 0.0);
         let linkage = match kind {
-            LoopKind::SliderCrank => {
+            LinkageKind::SliderCrank => {
                 let line = (pivot + Complex::i() * turn * offset, turn.arg());
                 let lengths = [crank, uniform(draws, 1.0, 5.0)];
                 SliderCrank::from_parts(pivot, lengths, line, point, AssemblyMode::Plus)
-                    .map(OneLoop::SliderCrank)
+                    .map(CrankLinkage::SliderCrank)
             }
             _ => {
                 let pivots = [pivot, pivot + turn * uniform(draws, 0.3, 5.0)];
                 InvertedSliderCrank::from_parts(pivots, crank, offset, point, AssemblyMode::Plus)
-                    .map(OneLoop::InvertedSliderCrank)
+                    .map(CrankLinkage::InvertedSliderCrank)
             }
         };
         let Ok(linkage) = linkage else { continue };
@@ -45,7 +45,7 @@ fn drawn(kind: LoopKind, draws: &mut Stream) -> OneLoop {
 }
 
 /// The problem of a table of outputs of a linkage, which count from the first one.
-fn problem(linkage: &OneLoop, key: &str, angles: &[f64], more: &str) -> String {
+fn problem(linkage: &CrankLinkage, key: &str, angles: &[f64], more: &str) -> String {
     let output = |angle: &f64| {
         let at = linkage.joints_with(*angle, linkage.assembly()).expect("it closes");
         match key {
@@ -84,9 +84,9 @@ fn assert_generates(candidate: &Candidate, pairs: &[[f64; 2]], is_place: bool) {
 #[test]
 fn tables_of_places_and_angles_are_found_again() {
     let classes = [
-        (LoopKind::SliderCrank, "output"),
-        (LoopKind::InvertedSliderCrank, "output"),
-        (LoopKind::InvertedSliderCrank, "output_deg"),
+        (LinkageKind::SliderCrank, "output"),
+        (LinkageKind::InvertedSliderCrank, "output"),
+        (LinkageKind::InvertedSliderCrank, "output_deg"),
     ];
     for (kind, key) in classes {
         for case in 0..12 {
@@ -114,7 +114,7 @@ fn offsets_from_the_ground_are_kept() {
     let line = (Complex::new(0.0, 0.4), 0.0);
     let zero = Complex::new(0.0, 0.0);
     let made = SliderCrank::from_parts(zero, [1.0, 3.0], line, zero, AssemblyMode::Plus).expect("a linkage");
-    let linkage = OneLoop::SliderCrank(made);
+    let linkage = CrankLinkage::SliderCrank(made);
     let pairs: Vec<(f64, f64)> = (0..9)
         .map(|j| {
             let deg = 25.0 * f64::from(j);
@@ -136,7 +136,7 @@ fn offsets_from_the_ground_are_kept() {
 }
 
 /// The linkage with one of its dimensions changed: Ax, Ay, Bx, By, a, b, the block's offset, or an end of the rail moved across it.
-fn changed(linkage: &OneLoop, name: &str, by: f64, rail: [f64; 2]) -> OneLoop {
+fn changed(linkage: &CrankLinkage, name: &str, by: f64, rail: [f64; 2]) -> CrankLinkage {
     let shift = match name {
         "Ax" | "Bx" => Complex::new(by, 0.0),
         "Ay" | "By" => Complex::new(0.0, by),
@@ -147,30 +147,30 @@ fn changed(linkage: &OneLoop, name: &str, by: f64, rail: [f64; 2]) -> OneLoop {
     let crank = linkage.crank() + if name == "a" { by } else { 0.0 };
     let (pivot, offset, t1) = (linkage.crank_pivot() + a, linkage.coupler_offset(), linkage.assembly());
     match linkage {
-        OneLoop::SliderCrank(l) => {
+        CrankLinkage::SliderCrank(l) => {
             let (s, q) = (l.line_direction(), l.line_point());
             let ends = [("rail_from", rail[0]), ("rail_to", rail[1])]
                 .map(|(end, place)| q + s * place + Complex::i() * s * if name == end { by } else { 0.0 });
             let turned = (ends[1] - ends[0]).arg();
             let coupler = l.coupler() + if name == "b" { by } else { 0.0 };
             let made = SliderCrank::from_parts(pivot, [crank, coupler], (ends[0], turned), offset, t1);
-            OneLoop::SliderCrank(made.expect("a linkage"))
+            CrankLinkage::SliderCrank(made.expect("a linkage"))
         }
-        OneLoop::InvertedSliderCrank(l) => {
+        CrankLinkage::InvertedSliderCrank(l) => {
             let h = l.offset() + if name == "offset" { by } else { 0.0 };
             let made = InvertedSliderCrank::from_parts([pivot, l.block_pivot() + b], crank, h, offset, t1);
-            OneLoop::InvertedSliderCrank(made.expect("a linkage"))
+            CrankLinkage::InvertedSliderCrank(made.expect("a linkage"))
         }
-        OneLoop::FourBar(_) => unreachable!("no four-bar is drawn"),
+        CrankLinkage::FourBar(_) => unreachable!("no four-bar is drawn"),
     }
 }
 
 #[test]
 fn sensitivities_of_outputs_agree_with_changed_dimensions() {
     let classes = [
-        (LoopKind::SliderCrank, Output::Place),
-        (LoopKind::InvertedSliderCrank, Output::Place),
-        (LoopKind::InvertedSliderCrank, Output::Angle),
+        (LinkageKind::SliderCrank, Output::Place),
+        (LinkageKind::InvertedSliderCrank, Output::Place),
+        (LinkageKind::InvertedSliderCrank, Output::Angle),
     ];
     for (kind, output) in classes {
         for case in 0..8 {
@@ -181,7 +181,7 @@ fn sensitivities_of_outputs_agree_with_changed_dimensions() {
                 .iter()
                 .map(|&crank_angle| At { crank_angle, assembly: linkage.assembly(), is_free: false })
                 .collect();
-            let measured = |linkage: &OneLoop, angle: f64| {
+            let measured = |linkage: &CrankLinkage, angle: f64| {
                 let at = linkage.joints_with(angle, linkage.assembly()).expect("the crank turns fully");
                 match output {
                     Output::Place => linkage.slider_place(&at).expect("a slider"),
@@ -223,7 +223,7 @@ fn sensitivities_of_outputs_agree_with_changed_dimensions() {
 }
 
 /// The stroke and the time ratio by 36,000 positions.
-fn sampled(linkage: &OneLoop) -> [f64; 2] {
+fn sampled(linkage: &CrankLinkage) -> [f64; 2] {
     const STEPS: u32 = 36_000;
     let place = |step: u32| {
         let angle = 2.0 * PI * f64::from(step) / f64::from(STEPS);

@@ -9,7 +9,7 @@ use linkwright::internals::files::linkage_file::{any_to_toml, parse_any};
 use linkwright::internals::judge::assess::assess;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::mechanism::{
-    AssemblyMode, Complex, InvertedSliderCrank, LoopKind, OneLoop, SliderCrank, dot, xy,
+    AssemblyMode, Complex, CrankLinkage, InvertedSliderCrank, LinkageKind, SliderCrank, dot, xy,
 };
 use linkwright::internals::record::{Candidate, Record};
 use linkwright::internals::report::html::report_html;
@@ -20,22 +20,22 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-fn slider_crank() -> OneLoop {
+fn slider_crank() -> CrankLinkage {
     let direction = 0.3;
     let line = (Complex::new(1.1, 1.6), direction);
     let offset = Complex::new(2.0, 1.0);
     let made = SliderCrank::from_parts(Complex::new(1.0, 2.0), [1.0, 3.0], line, offset, AssemblyMode::Plus);
-    OneLoop::SliderCrank(made.expect("a linkage"))
+    CrankLinkage::SliderCrank(made.expect("a linkage"))
 }
 
-fn inverted() -> OneLoop {
+fn inverted() -> CrankLinkage {
     let pivots = [Complex::new(0.0, 0.0), Complex::new(2.5, 0.5)];
     let made = InvertedSliderCrank::from_parts(pivots, 1.0, 0.4, Complex::new(3.0, 1.0), AssemblyMode::Plus);
-    OneLoop::InvertedSliderCrank(made.expect("a linkage"))
+    CrankLinkage::InvertedSliderCrank(made.expect("a linkage"))
 }
 
 /// Points of a linkage's curve at crank angles, radians.
-fn points(linkage: &OneLoop, angles: &[f64]) -> String {
+fn points(linkage: &CrankLinkage, angles: &[f64]) -> String {
     let point = |angle: &f64| {
         let at = linkage.joints_with(*angle, linkage.assembly()).expect("it closes");
         let [x, y] = xy(at.joints.coupler_point);
@@ -45,7 +45,7 @@ fn points(linkage: &OneLoop, angles: &[f64]) -> String {
 }
 
 /// A problem file of points of a linkage's curve.
-fn problem(linkage: &OneLoop, angles: &[f64], closed: bool, more: &str) -> String {
+fn problem(linkage: &CrankLinkage, angles: &[f64], closed: bool, more: &str) -> String {
     format!("format = 1\n[task.path]\nclosed = {closed}\npoints = [{}]\n{more}", points(linkage, angles))
 }
 
@@ -61,13 +61,13 @@ fn assert_closed(candidate: &Candidate, targets: &[[f64; 2]], size: f64) {
         near((c - a).norm(), candidate.linkage.crank());
         near(((c - a).arg() - deg.to_radians()).sin(), 0.0);
         let along = match &candidate.linkage {
-            OneLoop::SliderCrank(l) => {
+            CrankLinkage::SliderCrank(l) => {
                 near((d - c).norm(), l.coupler());
                 let s = Complex::from_polar(1.0, l.parameters().line_deg.to_radians());
                 near(((d - l.line_point()) * s.conj()).im, 0.0);
                 (d - c) / l.coupler()
             }
-            OneLoop::InvertedSliderCrank(l) => {
+            CrankLinkage::InvertedSliderCrank(l) => {
                 let arm = l.block_pivot() - d;
                 near(arm.norm(), l.offset().abs());
                 near(dot(arm, d - c), 0.0);
@@ -76,7 +76,7 @@ fn assert_closed(candidate: &Candidate, targets: &[[f64; 2]], size: f64) {
                 near((arm * u.conj()).im, l.offset());
                 u
             }
-            OneLoop::FourBar(_) => panic!("not a four-bar"),
+            CrankLinkage::FourBar(_) => panic!("not a four-bar"),
         };
         let offset = candidate.linkage.coupler_offset();
         near((p - c - along * offset).norm(), 0.0);
@@ -115,7 +115,7 @@ fn curves_of_both_kinds_are_found_again_closed_open_and_timed() {
 }
 
 /// A problem file of poses of a linkage's coupler, without the angle of those in `without`.
-fn motion(linkage: &OneLoop, angles: &[f64], without: &[usize], more: &str) -> String {
+fn motion(linkage: &CrankLinkage, angles: &[f64], without: &[usize], more: &str) -> String {
     let pose = |(j, angle): (usize, &f64)| {
         let at = linkage.joints_with(*angle, linkage.assembly()).expect("it closes");
         let ([x, y], deg) = (xy(at.joints.coupler_point), (at.coupler.arg() + 0.4).to_degrees());
@@ -163,7 +163,7 @@ fn led_by_a_slider_crank(name: &str) -> Record {
     let record = solved(spec);
     assert!(verify(&record).is_ok_and(|found| found.is_empty()));
     let best = &record.candidates[0];
-    assert!(best.accepted && best.linkage.kind() == LoopKind::SliderCrank);
+    assert!(best.accepted && best.linkage.kind() == LinkageKind::SliderCrank);
     record
 }
 
@@ -172,9 +172,9 @@ fn kinds_are_ranked_together_and_the_stride_is_drawn_by_a_slider_crank() {
     let record = led_by_a_slider_crank("walking-stride-slider");
     let best = &record.candidates[0];
     assert!(best.error.rms < 0.345 && best.transmission_deg.worst > 39.0, "{}", best.error.rms);
-    let four_bar = record.candidates.iter().find(|c| c.linkage.kind() == LoopKind::FourBar);
+    let four_bar = record.candidates.iter().find(|c| c.linkage.kind() == LinkageKind::FourBar);
     assert!(four_bar.is_some_and(|c| c.error.rms > 1.6), "the four-bar is listed behind it");
-    for candidate in record.candidates.iter().filter(|c| c.linkage.kind() != LoopKind::FourBar) {
+    for candidate in record.candidates.iter().filter(|c| c.linkage.kind() != LinkageKind::FourBar) {
         assert_closed(candidate, &record.problem.resolved.task.points, 500.0);
     }
 }
@@ -185,7 +185,7 @@ fn a_door_on_a_rail_is_nearer_to_its_poses_than_on_two_arms() {
     let best = &record.candidates[0];
     assert!(best.error.objective < 557.3 && best.transmission_deg.worst > 38.0, "{}", best.error.objective);
     assert_closed(best, &record.problem.resolved.task.points, 1500.0);
-    let four_bar = record.candidates.iter().find(|c| c.linkage.kind() == LoopKind::FourBar);
+    let four_bar = record.candidates.iter().find(|c| c.linkage.kind() == LinkageKind::FourBar);
     assert!(four_bar.is_none_or(|c| c.error.rms > 50.0));
 }
 
@@ -249,10 +249,11 @@ fn a_linkage_file_of_each_kind_is_known_as_written_by_the_program_and_reads_back
 fn a_record_with_a_stray_key_of_another_kind_is_refused() {
     let text = r#"{"kind": "slider-crank", "A": [0, 0], "B": [1, 0], "a": 1, "b": 3, "line_point": [0, 0], "line_deg": 0,
         "coupler_x": 1, "coupler_y": 0, "t1": 1}"#;
-    let refused = serde_json::from_str::<OneLoop>(text).expect_err("B is no key").to_string();
+    let refused = serde_json::from_str::<CrankLinkage>(text).expect_err("B is no key").to_string();
     assert!(refused.contains("a slider-crank has no key `B`"), "{refused}");
-    let missing =
-        serde_json::from_str::<OneLoop>(&text.replace(r#""B": [1, 0], "#, "").replace(r#""b": 3, "#, ""));
+    let missing = serde_json::from_str::<CrankLinkage>(
+        &text.replace(r#""B": [1, 0], "#, "").replace(r#""b": 3, "#, ""),
+    );
     assert!(missing.expect_err("b is missing").to_string().contains("missing field `b`"));
 }
 
@@ -261,7 +262,7 @@ fn crank_angles_from_a_line_keep_the_root_of_its_sense() {
     let line = (Complex::new(0.5, -0.7), 0.4);
     let (pivot, offset) = (Complex::new(1.0, 2.0), Complex::new(2.0, 1.0));
     let made = SliderCrank::from_parts(pivot, [1.0, 4.0], line, offset, AssemblyMode::Minus);
-    let linkage = OneLoop::SliderCrank(made.expect("a linkage"));
+    let linkage = CrankLinkage::SliderCrank(made.expect("a linkage"));
     let angles: Vec<f64> = (0..18).map(|j| 0.4 + 5.0 * f64::from(j) / 17.0).collect();
     let crank_deg: Vec<f64> = (0..18).map(|j| (5.0 * f64::from(j) / 17.0).to_degrees()).collect();
     let more = format!(
@@ -284,10 +285,10 @@ fn a_four_bar_on_the_limit_of_its_link_ratio_has_a_slider_beside_it() {
                 evaluations = 1000000\n";
     let record = solved(parse(&problem(&linkage, &angles, false, more)).spec);
     let first = &record.candidates[0];
-    assert_eq!(first.linkage.kind(), LoopKind::FourBar);
+    assert_eq!(first.linkage.kind(), LinkageKind::FourBar);
     assert!(first.warnings.iter().any(|warning| warning.key == "link_ratio_max"), "{:?}", first.warnings);
     let beside = record.buildable.as_ref().expect("a slider beside it");
-    assert_eq!(beside.linkage.kind(), LoopKind::SliderCrank);
+    assert_eq!(beside.linkage.kind(), LinkageKind::SliderCrank);
     assert!(beside.accepted && beside.error.rms_over_size < 1e-9, "{}", beside.error.rms_over_size);
     assert_eq!(verify(&record).expect("a record"), []);
 }
@@ -392,9 +393,9 @@ fn a_slider_that_draws_nearly_what_a_four_bar_draws_is_listed_beside_it() {
         bean.join(", ")
     );
     let record = solved(parse(&text).spec);
-    let kinds: Vec<LoopKind> = record.candidates.iter().map(|c| c.linkage.kind()).collect();
-    assert!(kinds[..2].contains(&LoopKind::FourBar), "{kinds:?}");
-    assert!(kinds[..2].contains(&LoopKind::InvertedSliderCrank), "{kinds:?}");
+    let kinds: Vec<LinkageKind> = record.candidates.iter().map(|c| c.linkage.kind()).collect();
+    assert!(kinds[..2].contains(&LinkageKind::FourBar), "{kinds:?}");
+    assert!(kinds[..2].contains(&LinkageKind::InvertedSliderCrank), "{kinds:?}");
     assert!(record.candidates.windows(2).all(|c| c[0].error.rms <= c[1].error.rms));
     assert_eq!(verify(&record).expect("a problem"), []);
 }

@@ -4,7 +4,7 @@ use crate::common::{bytes, literature, run_on};
 use linkwright::internals::judge::rank::compare;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::mechanism::{
-    AssemblyMode, Complex, FourBar, InvertedSliderCrank, OneLoop, SliderCrank,
+    AssemblyMode, Complex, CrankLinkage, FourBar, InvertedSliderCrank, SliderCrank,
 };
 use linkwright::internals::record::{Candidate, Reason, Record, Termination};
 use linkwright::internals::synthesis::snap::{
@@ -146,7 +146,7 @@ fn a_linkage_whose_lengths_are_stock_already_keeps_them_and_its_curve() {
         snap(Context::new(&problem, &budget()), &candidate, &request(10.0, &keys)).expect("an answer");
     for length in keys {
         let [is, was] =
-            [found.candidates[0].linkage, linkage.into()].map(|linkage: OneLoop| length.of(linkage));
+            [found.candidates[0].linkage, linkage.into()].map(|linkage: CrankLinkage| length.of(linkage));
         assert!((is.expect("it has it") - was.expect("it has it")).abs() < 1e-12);
     }
     assert!(found.candidates[0].error.rms < 1e-9 * problem.task().size());
@@ -193,15 +193,15 @@ fn what_is_kept_or_set_stays_and_what_cannot_be_snapped_is_told() {
 }
 
 /// A slider-crank and an inverted one of odd lengths, in millimetres.
-fn sliders() -> [OneLoop; 2] {
+fn sliders() -> [CrankLinkage; 2] {
     let line = (Complex::new(110.3, 16.2), 0.3);
     let (offset, t1) = (Complex::new(61.7, 33.1), AssemblyMode::Plus);
     let slider = SliderCrank::from_parts(Complex::new(10.0, 20.0), [31.3, 97.4], line, offset, t1);
     let pivots = [Complex::new(0.0, 0.0), Complex::new(83.7, 11.2)];
     let inverted = InvertedSliderCrank::from_parts(pivots, 30.6, 9.1, offset, t1);
     [
-        OneLoop::SliderCrank(slider.expect("a linkage")),
-        OneLoop::InvertedSliderCrank(inverted.expect("a linkage")),
+        CrankLinkage::SliderCrank(slider.expect("a linkage")),
+        CrankLinkage::InvertedSliderCrank(inverted.expect("a linkage")),
     ]
 }
 

@@ -8,7 +8,7 @@ use crate::random::{TYPES, linkage};
 use crate::report::records::{detail, k18, rocking, shapes};
 use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, Motion};
 use linkwright::internals::mechanism::{
-    AssemblyMode, Complex, FourBar, InvertedSliderCrank, OneLoop, SliderCrank, Status, xy,
+    AssemblyMode, Complex, CrankLinkage, FourBar, InvertedSliderCrank, SliderCrank, Status, xy,
 };
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
 use linkwright::internals::record::Record;
@@ -52,7 +52,7 @@ fn position(linkage: &FourBar, angle: f64, t1: AssemblyMode) -> Option<Value> {
 }
 
 /// Draws a linkage with a slider.
-fn slider(draws: &mut Stream, inverted: bool) -> OneLoop {
+fn slider(draws: &mut Stream, inverted: bool) -> CrankLinkage {
     let mut number = |low: f64, high: f64| uniform(draws, low, high);
     let pivot = Complex::new(number(-2.0, 2.0), number(-2.0, 2.0));
     let other = pivot + Complex::new(number(-3.0, 3.0), number(-3.0, 3.0));
@@ -61,15 +61,15 @@ fn slider(draws: &mut Stream, inverted: bool) -> OneLoop {
     let (angle, t1) = (number(-3.0, 3.0), AssemblyMode::of(number(-1.0, 1.0)));
     if inverted {
         let made = InvertedSliderCrank::from_parts([pivot, other], a, h, offset, t1);
-        OneLoop::InvertedSliderCrank(made.expect("a linkage"))
+        CrankLinkage::InvertedSliderCrank(made.expect("a linkage"))
     } else {
         let made = SliderCrank::from_parts(pivot, [a, b], (other, angle), offset, t1);
-        OneLoop::SliderCrank(made.expect("a linkage"))
+        CrankLinkage::SliderCrank(made.expect("a linkage"))
     }
 }
 
 /// A linkage with a slider at a crank angle, as far as the kernel has an answer.
-fn slider_position(linkage: &OneLoop, angle: f64) -> Option<Value> {
+fn slider_position(linkage: &CrankLinkage, angle: f64) -> Option<Value> {
     let mechanism = linkage.mechanism();
     let moved = mechanism.motion_at(angle, INPUT);
     let mut row = json!({ "linkage": linkage, "angle": angle, "t1": i64::from(linkage.assembly()) });

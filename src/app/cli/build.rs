@@ -7,7 +7,7 @@ use super::{Ended, refuse, terminal};
 use crate::files::diagnostic::escaped;
 pub use crate::judge::practicality::{Build, usual_tolerance};
 use crate::judge::practicality::{Practicality, Sweep};
-use crate::mechanism::{LoopKind, OneLoop, Unit};
+use crate::mechanism::{CrankLinkage, LinkageKind, Unit};
 use crate::record::Candidate;
 use crate::report::practicality::practicality_text;
 use crate::report::text::clean;
@@ -31,7 +31,7 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
 /// The linkage that is to be built.
 struct Subject {
     title: String,
-    linkage: OneLoop,
+    linkage: CrankLinkage,
     unit: Option<Unit>,
     /// The motion over which it is examined; `None` if it cannot be assembled.
     sweep: Option<Sweep>,
@@ -90,9 +90,9 @@ fn no_room(given: &Subject) -> Ended {
 }
 
 /// Returns the place that the slot of a linkage with a slider can run into, in words.
-fn slot_end(linkage: &OneLoop) -> &'static str {
+fn slot_end(linkage: &CrankLinkage) -> &'static str {
     match linkage.kind() {
-        LoopKind::InvertedSliderCrank => "the crank pin C, which the block reaches at a toggle",
-        LoopKind::SliderCrank | LoopKind::FourBar => "the crank's pivot A, which the block reaches",
+        LinkageKind::InvertedSliderCrank => "the crank pin C, which the block reaches at a toggle",
+        LinkageKind::SliderCrank | LinkageKind::FourBar => "the crank's pivot A, which the block reaches",
     }
 }

@@ -12,7 +12,7 @@ use crate::app::job::run::Job;
 use crate::files::name::{self, NameError};
 use crate::judge::assess::{assess, to_raw};
 use crate::judge::verify::{Mismatch, verify};
-use crate::mechanism::{AssemblyMode, LinkageKeys, NoLinkage, OneLoop};
+use crate::mechanism::{AssemblyMode, CrankLinkage, LinkageKeys, NoLinkage};
 use crate::record::digest::ProblemError;
 use crate::record::{Candidate, Evaluations, ProblemRecord, Reason, Record};
 use crate::report::compare::{SortKey, UnknownKey};
@@ -302,7 +302,7 @@ impl House {
     fn drawn(&self, drawn: &Drawn, with_costs: bool) -> Result<Found, DetailsError> {
         let file = drawn.ask.problem()?;
         let problem = Problem::new(file.spec.clone()).map_err(AskError::Task)?;
-        let linkage = OneLoop::try_from(drawn.linkage.clone())?;
+        let linkage = CrankLinkage::try_from(drawn.linkage.clone())?;
         let n = problem.task().len();
         if drawn.crank_deg.len() != n || drawn.t1_at.len() != n {
             return Err(DetailsError::Positions(n));
@@ -338,7 +338,7 @@ impl House {
     /// [`DetailsError`].
     pub(super) fn judged(&self, JudgeAsk { ask, linkage }: &JudgeAsk) -> Result<Shown, DetailsError> {
         let problem = Problem::new(ask.problem()?.spec).map_err(AskError::Task)?;
-        let linkage = OneLoop::try_from(linkage.clone())?;
+        let linkage = CrankLinkage::try_from(linkage.clone())?;
         let positions = nearest_positions(&problem, linkage);
         let judged = positions.and_then(|(crank_deg, t1_at)| assess(&problem, linkage, &crank_deg, &t1_at));
         let candidate = judged.ok_or(DetailsError::NotAssembled)?;

@@ -3,7 +3,7 @@
 use super::pin_map::PinMap;
 use super::targets::{BodyAsk, FunctionAsk};
 use crate::files::problem_file::Expect;
-use crate::mechanism::{LinkageKeys, LinkageType, LoopKind, OneLoop, Unit};
+use crate::mechanism::{CrankLinkage, LinkageKeys, LinkageKind, LinkageType, Unit};
 use crate::record::{AngleErrorRecord, Candidate, ExactLinkage, ExactRecord, ProblemRecord, Relaxation};
 use crate::report::exact;
 use crate::report::html::Drive;
@@ -59,7 +59,7 @@ pub struct Ask {
     pub raw: Option<RawPoints>,
     /// The kinds of linkages that are searched for; empty: four-bars.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub mechanism: Vec<LoopKind>,
+    pub mechanism: Vec<LinkageKind>,
     /// The types allowed of four-bars; empty: any.
     #[serde(default)]
     pub types: Vec<LinkageType>,
@@ -254,7 +254,7 @@ pub struct Shown {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub number: Option<u64>,
     /// The linkage, as in records.
-    pub linkage: OneLoop,
+    pub linkage: CrankLinkage,
     /// Its drive over its motion.
     pub drive: Drive,
     /// The crank angle at each target point, degrees.

@@ -14,7 +14,7 @@ use super::reading;
 use super::server::{live, page};
 use super::tab::BUG;
 use crate::files::{linkage_file, name};
-use crate::mechanism::OneLoop;
+use crate::mechanism::CrankLinkage;
 use crate::report::compare::Comparison;
 use axum::body::Bytes;
 use axum::extract::{Path, State};
@@ -181,7 +181,7 @@ fn routes_of_the_page() -> Vec<Route> {
             .summed_up("The problem file that asks the same."),
         Route::asked("/linkage.toml", "this is no linkage", |_, ask: LinkageAsk| {
             name::check(&ask.name)?;
-            let linkage = OneLoop::try_from(ask.linkage)?;
+            let linkage = CrankLinkage::try_from(ask.linkage)?;
             Ok(Handed::shown("toml", linkage_file::any_to_toml(&ask.name, ask.unit, &linkage)))
         })
         .giving(TOML)

@@ -10,7 +10,7 @@ use super::pin_map::PinMap;
 use super::status::{ended, under_way};
 use crate::app::job::run::{Context, Job, run};
 use crate::judge::assess::assess;
-use crate::mechanism::OneLoop;
+use crate::mechanism::CrankLinkage;
 use crate::record::{Candidate, ExactRecord, Record, Relaxation};
 use crate::synthesis::continuation::Exact;
 use crate::synthesis::live::nine::Nine;
@@ -223,7 +223,7 @@ impl Tab {
             self.session.clear();
         }
         self.session.hold(ask.held);
-        if let Some(linkage) = ask.from.and_then(|from| OneLoop::try_from(from).ok()) {
+        if let Some(linkage) = ask.from.and_then(|from| CrankLinkage::try_from(from).ok()) {
             self.session.begin(&problem, &linkage);
         }
         self.follow(&problem);

@@ -11,8 +11,8 @@ use crate::files::name;
 use crate::files::toml_text::TomlText;
 use crate::files::toml_values::{Count, Number, OnlyTable, XY};
 use crate::mechanism::{
-    AssemblyMode, CouplerSide, FourBar, InvertedSliderCrank, Linkage, LinkageError, MAX_MAGNITUDE,
-    NaturalCoordinates, OneLoop, SliderCrank, Unit, VectorLoop,
+    AssemblyMode, CouplerSide, CrankLinkage, FourBar, InvertedSliderCrank, Linkage, LinkageError,
+    MAX_MAGNITUDE, NaturalCoordinates, SliderCrank, Unit, VectorLoop,
 };
 use crate::record::Candidate;
 use crate::task::Sense;
@@ -190,24 +190,27 @@ fn refuse_kind<T>(
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_one_loop(path: &Path) -> Result<LinkageFile<OneLoop>, Box<Diagnostic>> {
+pub fn load_crank_linkage(path: &Path) -> Result<LinkageFile<CrankLinkage>, Box<Diagnostic>> {
     let text = input_text::read(path)?;
-    parse_one_loop(&path.display().to_string(), &text)
+    parse_crank_linkage(&path.display().to_string(), &text)
 }
 
-/// Reads the linkage of one loop of a text, as [`load_one_loop`] does.
+/// Reads the linkage of one loop of a text, as [`load_crank_linkage`] does.
 ///
 /// # Errors
 /// As [`load`].
-pub fn parse_one_loop(file_name: &str, text: &str) -> Result<LinkageFile<OneLoop>, Box<Diagnostic>> {
+pub fn parse_crank_linkage(
+    file_name: &str,
+    text: &str,
+) -> Result<LinkageFile<CrankLinkage>, Box<Diagnostic>> {
     let AnyLinkageFile { name, unit, linkage } = parse_any(file_name, text)?;
     let found = match &linkage {
-        Linkage::FourBar(linkage) => Some(OneLoop::FourBar(*linkage)),
-        Linkage::SliderCrank(linkage) => Some(OneLoop::SliderCrank(*linkage)),
-        Linkage::InvertedSliderCrank(linkage) => Some(OneLoop::InvertedSliderCrank(*linkage)),
+        Linkage::FourBar(linkage) => Some(CrankLinkage::FourBar(*linkage)),
+        Linkage::SliderCrank(linkage) => Some(CrankLinkage::SliderCrank(*linkage)),
+        Linkage::InvertedSliderCrank(linkage) => Some(CrankLinkage::InvertedSliderCrank(*linkage)),
         Linkage::Chain(chain) => SliderCrank::from_chain(chain)
-            .map(OneLoop::SliderCrank)
-            .or_else(|| InvertedSliderCrank::from_chain(chain).map(OneLoop::InvertedSliderCrank)),
+            .map(CrankLinkage::SliderCrank)
+            .or_else(|| InvertedSliderCrank::from_chain(chain).map(CrankLinkage::InvertedSliderCrank)),
     };
     match found {
         Some(linkage) => Ok(LinkageFile { name, unit, linkage }),
@@ -396,11 +399,11 @@ pub fn to_toml(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
 }
 
 /// Returns the text of the linkage file of a linkage of any kind; every number reads back to the same digits.
-pub fn any_to_toml(name: &str, unit: Option<Unit>, linkage: &OneLoop) -> String {
+pub fn any_to_toml(name: &str, unit: Option<Unit>, linkage: &CrankLinkage) -> String {
     match linkage {
-        OneLoop::FourBar(linkage) => to_toml(name, unit, linkage),
-        OneLoop::SliderCrank(linkage) => slider_crank_to_toml(name, unit, linkage),
-        OneLoop::InvertedSliderCrank(linkage) => inverted_slider_crank_to_toml(name, unit, linkage),
+        CrankLinkage::FourBar(linkage) => to_toml(name, unit, linkage),
+        CrankLinkage::SliderCrank(linkage) => slider_crank_to_toml(name, unit, linkage),
+        CrankLinkage::InvertedSliderCrank(linkage) => inverted_slider_crank_to_toml(name, unit, linkage),
     }
 }
 
@@ -437,7 +440,12 @@ impl Carried {
 }
 
 /// Returns the linkage file of a linkage as [`to_toml`] does, with a comment on the body or the function.
-pub fn to_toml_with(name: &str, unit: Option<Unit>, linkage: &OneLoop, carried: Option<Carried>) -> String {
+pub fn to_toml_with(
+    name: &str,
+    unit: Option<Unit>,
+    linkage: &CrankLinkage,
+    carried: Option<Carried>,
+) -> String {
     let text = any_to_toml(name, unit, linkage);
     let comment = match carried {
         None => return text,
@@ -446,7 +454,7 @@ pub fn to_toml_with(name: &str, unit: Option<Unit>, linkage: &OneLoop, carried: 
         ),
         Some(Carried::Places([input, output], sense)) => {
             let (line, zero) = match linkage {
-                OneLoop::InvertedSliderCrank(_) => ("line from A to B", "pin C, along the rod"),
+                CrankLinkage::InvertedSliderCrank(_) => ("line from A to B", "pin C, along the rod"),
                 _ => ("slider's line", "foot of the perpendicular from A, along the line"),
             };
             let way = if sense == Sense::Opposite { " backwards" } else { "" };

@@ -4,7 +4,7 @@ use super::raw::RawDesign;
 use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::linkage_file::{no_triangle, triangle_remedy};
 use crate::files::toml_text::TomlText;
-use crate::mechanism::{FLAT_TOLERANCE, LoopKind};
+use crate::mechanism::{FLAT_TOLERANCE, LinkageKind};
 use crate::task::Output;
 use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, Limits, RequireSpec, SolveSpec, TaskSpec};
@@ -37,13 +37,13 @@ pub(super) fn spec_of(raw: &RawDesign, of_places: bool) -> DesignSpec {
 
 /// Returns the kinds of linkages, sorted; none where they are four-bars alone. Where the file is silent a slider's places are
 /// those of a slider-crank.
-fn kinds_of(raw: &RawDesign, of_places: bool) -> Vec<LoopKind> {
-    let silent = || if of_places { vec![LoopKind::SliderCrank] } else { Vec::new() };
+fn kinds_of(raw: &RawDesign, of_places: bool) -> Vec<LinkageKind> {
+    let silent = || if of_places { vec![LinkageKind::SliderCrank] } else { Vec::new() };
     let mut kinds = raw.mechanism.as_ref().map_or_else(silent, |kinds| kinds.0.clone());
     kinds.sort_unstable();
     kinds.dedup();
     // A list of four-bars for places is refused later.
-    if kinds == [LoopKind::FourBar] && !of_places { Vec::new() } else { kinds }
+    if kinds == [LinkageKind::FourBar] && !of_places { Vec::new() } else { kinds }
 }
 
 /// Refuses keys that go with no kind that is searched for: an empty list of kinds, a line or a stroke without a slider-crank, a
@@ -55,7 +55,7 @@ pub(super) fn of_kinds(
 ) -> Checked<()> {
     let lines = [("line_deg", raw.line_deg.is_some()), ("line_point", raw.line_point.is_some())];
     let kinds = kinds_of(raw, task.is_of_places());
-    let has_line = kinds.contains(&LoopKind::SliderCrank);
+    let has_line = kinds.contains(&LinkageKind::SliderCrank);
     if let Some((key, _)) = lines.into_iter().find(|(_, given)| *given && !has_line) {
         let message = format!("{key} is about the line of a slider-crank, and none is searched for");
         return toml.refuse(
@@ -65,7 +65,8 @@ pub(super) fn of_kinds(
         );
     }
     let asked = [("stroke", require.stroke.is_some()), ("time_ratio", require.time_ratio.is_some())];
-    if let Some((key, _)) = asked.into_iter().find(|(_, given)| *given && kinds != [LoopKind::SliderCrank]) {
+    if let Some((key, _)) = asked.into_iter().find(|(_, given)| *given && kinds != [LinkageKind::SliderCrank])
+    {
         let message = format!("{key} is about a slider-crank, and other kinds are searched for");
         let help = "remove it, or write mechanism = \"slider-crank\" in [design]";
         return toml.refuse(&format!("require.{key}"), message, help);
@@ -86,7 +87,7 @@ pub(super) fn of_kinds(
         };
         return toml.refuse("design.mechanism", format!("a {kind} has {}", output.missing()), help);
     }
-    let Some(slider) = kinds.iter().find(|kind| **kind != LoopKind::FourBar) else { return Ok(()) };
+    let Some(slider) = kinds.iter().find(|kind| **kind != LinkageKind::FourBar) else { return Ok(()) };
     let Some(reason) = WithoutSliders::of(task, solve) else { return Ok(()) };
     let why = format!("\"{slider}\" {reason}");
     if raw.mechanism.is_none() {

@@ -6,7 +6,7 @@ use super::ranges::RangeNumbers;
 use crate::files::toml_values::{
     BoundedXY, Bounds, Count, CrankAngle, Number, OneOrEach, OnlyTable, PoseNumbers, XY,
 };
-use crate::mechanism::{LoopKind, Unit};
+use crate::mechanism::{LinkageKind, Unit};
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
 use crate::task::requirement::RawRequire;
@@ -187,7 +187,7 @@ pub(crate) struct RawTiming {
 pub(crate) struct RawDesign {
     /// The kinds of linkages to search for, ranked together: one name or a list of four-bar (default), slider-crank and
     /// inverted-slider-crank. Kinds with a slider take paths and motions.
-    pub mechanism: Option<OneOrMore<LoopKind>>,
+    pub mechanism: Option<OneOrMore<LinkageKind>>,
     /// The fixed pivot of the crank: [x, y], each a number or [min, max]; where silent, within 5 sizes of the target.
     #[serde(rename = "A")]
     pub crank_pivot: Option<BoundedXY>,

@@ -4,7 +4,7 @@ use super::closest::{Closest, closest};
 use super::sweep::{Reach, Sweep};
 pub use crate::mechanism::plates::Joint;
 use crate::mechanism::plates::{Guide, Link, Parts, Placement, Plate, Sizes, parts};
-use crate::mechanism::{FourBar, LoopJoints, OneLoop, Unit, length};
+use crate::mechanism::{CrankLinkage, FourBar, LoopJoints, Unit, length};
 
 /// Radii of the plates and pins of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +83,7 @@ impl Build {
     /// runs through a hole however small that is.
     pub fn usual_hole_of(sweep: &Sweep, unit: Option<Unit>) -> Option<f64> {
         let linkage = &sweep.linkage;
-        if let OneLoop::FourBar(linkage) = linkage {
+        if let CrankLinkage::FourBar(linkage) = linkage {
             return Some(Build::usual_hole(linkage, unit));
         }
         let wanted = wanted_hole(linkage.longest(), unit);

@@ -14,7 +14,7 @@ use super::sensitivity::At;
 use crate::mechanism::four_bar::gradient::{follower_gradient, ground_gradient, shape_gradient};
 use crate::mechanism::slider::SliderColumn;
 use crate::mechanism::{
-    Complex, FourBar, InvertedSliderCrank, OneLoop, SliderCrank, SliderLinkage, cross, dot, turned,
+    Complex, CrankLinkage, FourBar, InvertedSliderCrank, SliderCrank, SliderLinkage, cross, dot, turned,
 };
 use crate::task::Output;
 
@@ -45,11 +45,11 @@ pub(super) trait Dimensions: Sync {
 }
 
 /// Returns the dimensions of a linkage for its path at some positions.
-pub(super) fn of_path(linkage: &OneLoop, positions: &[At]) -> Box<dyn Dimensions> {
+pub(super) fn of_path(linkage: &CrankLinkage, positions: &[At]) -> Box<dyn Dimensions> {
     match *linkage {
-        OneLoop::FourBar(linkage) => Box::new(OfFourBar { linkage, flat: is_flat(&linkage) }),
-        OneLoop::SliderCrank(linkage) => Box::new(OfSliderCrank::new(linkage, positions)),
-        OneLoop::InvertedSliderCrank(linkage) => Box::new(linkage),
+        CrankLinkage::FourBar(linkage) => Box::new(OfFourBar { linkage, flat: is_flat(&linkage) }),
+        CrankLinkage::SliderCrank(linkage) => Box::new(OfSliderCrank::new(linkage, positions)),
+        CrankLinkage::InvertedSliderCrank(linkage) => Box::new(linkage),
     }
 }
 
@@ -131,14 +131,18 @@ impl Dimensions for OfOutput {
 }
 
 /// Returns the dimensions of a linkage whose output counts; `None` if it has no such output.
-pub(super) fn of_output(linkage: &OneLoop, output: Output, positions: &[At]) -> Option<Box<dyn Dimensions>> {
+pub(super) fn of_output(
+    linkage: &CrankLinkage,
+    output: Output,
+    positions: &[At],
+) -> Option<Box<dyn Dimensions>> {
     match (*linkage, output) {
-        (OneLoop::FourBar(linkage), Output::Angle) => Some(Box::new(OfOutput(linkage))),
-        (OneLoop::FourBar(_), Output::Place) | (OneLoop::SliderCrank(_), Output::Angle) => None,
-        (OneLoop::SliderCrank(linkage), Output::Place) => {
+        (CrankLinkage::FourBar(linkage), Output::Angle) => Some(Box::new(OfOutput(linkage))),
+        (CrankLinkage::FourBar(_), Output::Place) | (CrankLinkage::SliderCrank(_), Output::Angle) => None,
+        (CrankLinkage::SliderCrank(linkage), Output::Place) => {
             Some(Box::new(OfSliderPlace(OfSliderCrank::new(linkage, positions))))
         }
-        (OneLoop::InvertedSliderCrank(linkage), output) => Some(Box::new(OfBlock { linkage, output })),
+        (CrankLinkage::InvertedSliderCrank(linkage), output) => Some(Box::new(OfBlock { linkage, output })),
     }
 }
 

@@ -26,7 +26,7 @@ use super::dimensions::{Dimensions, MOST, of_output, of_path};
 pub use super::dimensions::{FLAT, is_flat};
 use super::sweep::Sweep;
 use crate::mechanism::effort::POINTS_AT_ONCE;
-use crate::mechanism::{AssemblyMode, Complex, OneLoop, dot, length};
+use crate::mechanism::{AssemblyMode, Complex, CrankLinkage, dot, length};
 use crate::task::Output;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -118,7 +118,7 @@ pub fn along(sweep: &Sweep, n: usize) -> Vec<At> {
 
 /// Computes the shifts of the path at the given positions for errors of the dimensions; `None` if none of the positions
 /// has a derivative.
-pub fn sensitivity(linkage: impl Into<OneLoop>, positions: &[At], crank: Crank) -> Option<Sensitivity> {
+pub fn sensitivity(linkage: impl Into<CrankLinkage>, positions: &[At], crank: Crank) -> Option<Sensitivity> {
     sensitivity_of(&*of_path(&linkage.into(), positions), positions, crank, None)
 }
 
@@ -126,7 +126,7 @@ pub fn sensitivity(linkage: impl Into<OneLoop>, positions: &[At], crank: Crank) 
 /// place as a length. `None` if none of the positions has a derivative, or the linkage no such output. `offset_is_free`: whether
 /// outputs count from anywhere.
 pub fn output_sensitivity(
-    linkage: impl Into<OneLoop>,
+    linkage: impl Into<CrankLinkage>,
     output: Output,
     positions: &[At],
     (crank, offset_is_free): (Crank, bool),

@@ -6,7 +6,7 @@ use super::layers::{Layering, layering};
 use super::sensitivity::{At, Crank, Sensitivity, along, output_sensitivity, sensitivity};
 use super::sweep::Sweep;
 use crate::judge::referee::judge;
-use crate::mechanism::{AssemblyMode, OneLoop};
+use crate::mechanism::{AssemblyMode, CrankLinkage};
 use crate::record::Candidate;
 use crate::task::spec::TransmissionOver;
 use crate::task::{AngleOffset, Output, Problem, TaskKind, Timing};
@@ -50,7 +50,7 @@ impl Practicality {
 
     /// Examines a linkage by itself over its whole motion without passing a toggle ([`Sweep::of_linkage`]), and the
     /// path along that motion, with free timing ([`Crank::Settles`]). `None` if it cannot be assembled.
-    pub fn of_linkage(linkage: impl Into<OneLoop>, build: Build) -> Option<Self> {
+    pub fn of_linkage(linkage: impl Into<CrankLinkage>, build: Build) -> Option<Self> {
         let sweep = Sweep::of_linkage(linkage)?;
         let felt = sensitivity(sweep.linkage, &along(&sweep, POSITIONS), Crank::Settles);
         Some(Practicality::of(sweep, build, felt, false))

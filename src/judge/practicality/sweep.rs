@@ -4,14 +4,14 @@
 use crate::judge::referee::UsedMotion;
 use crate::mechanism::plates::parts;
 pub use crate::mechanism::plates::{Reach, Stretch};
-use crate::mechanism::{AssemblyMode, InputArc, InputRange, LoopJoints, OneLoop};
+use crate::mechanism::{AssemblyMode, CrankLinkage, InputArc, InputRange, LoopJoints};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A linkage with its motion as stretches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
     /// The linkage.
-    pub linkage: OneLoop,
+    pub linkage: CrankLinkage,
     /// The stretches, which together are the motion.
     pub stretches: Vec<Stretch>,
     /// Whether the crank turns fully.
@@ -22,7 +22,7 @@ impl Sweep {
     /// Returns the whole motion of a linkage by itself without passing a toggle: the full turn, or the arc of the crank (of
     /// two arcs the first, of a four-bar the one to the left of A -> B) with the linkage's own assembly mode; `None` if it
     /// cannot be assembled.
-    pub fn of_linkage(linkage: impl Into<OneLoop>) -> Option<Self> {
+    pub fn of_linkage(linkage: impl Into<CrankLinkage>) -> Option<Self> {
         let linkage = linkage.into();
         let input = linkage.mobility().input;
         let [from, to] = match input {

@@ -1,7 +1,7 @@
 //! The stroke of a slider-crank's slider and its time ratio, from the two positions in which crank and coupler lie on one line.
 
 use super::{Finding, Judged, at_least, at_most};
-use crate::mechanism::{Complex, OneLoop, cross, dot};
+use crate::mechanism::{Complex, CrankLinkage, cross, dot};
 use crate::record::Figure;
 use crate::task::spec::Limits;
 use std::f64::consts::{PI, TAU};
@@ -27,7 +27,7 @@ fn within(value: Option<f64>, Limits(low, high): Limits) -> Finding {
 }
 
 /// Returns the stroke and the time ratio; `None` unless the crank of a slider-crank turns fully.
-fn ends(linkage: &OneLoop) -> Option<[f64; 2]> {
+fn ends(linkage: &CrankLinkage) -> Option<[f64; 2]> {
     let slider = linkage.slider_crank()?;
     if !linkage.mobility().input_turns_fully() {
         return None;

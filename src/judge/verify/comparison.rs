@@ -2,7 +2,7 @@
 
 use super::{Mismatch, verdict};
 use crate::judge::assess::assess_on_curve;
-use crate::mechanism::{AssemblyMode, OneLoop};
+use crate::mechanism::{AssemblyMode, CrankLinkage};
 use crate::record::Candidate;
 use crate::task::Problem;
 use crate::task::ranges::Reference;
@@ -87,7 +87,7 @@ impl<'a> Comparison<'a> {
     }
 
     /// Checks that a linkage is recorded as it is assembled at the first point.
-    pub fn assembly(&mut self, linkage: &OneLoop, t1_at: &[AssemblyMode]) {
+    pub fn assembly(&mut self, linkage: &CrankLinkage, t1_at: &[AssemblyMode]) {
         let sign = |t: AssemblyMode| format!("{:+}", t.sign());
         if let Some(&first) = t1_at.first() {
             self.same("linkage.t1", sign(linkage.assembly()), sign(first));
@@ -109,7 +109,7 @@ impl<'a> Comparison<'a> {
     /// does not close at every point, which `open` says.
     pub fn judged(
         &mut self,
-        (linkage, crank_deg, t1_at): (&OneLoop, &[f64], &[AssemblyMode]),
+        (linkage, crank_deg, t1_at): (&CrankLinkage, &[f64], &[AssemblyMode]),
         own: Option<Reference>,
         open: &str,
     ) -> Option<Candidate> {

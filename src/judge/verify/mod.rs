@@ -17,7 +17,7 @@ use crate::judge::costs::{marginal, weighted_rms};
 use crate::judge::error::{StructuralError, structural_error};
 use crate::judge::loosen::Demand;
 use crate::judge::rank::{compare, exact_objective};
-use crate::mechanism::OneLoop;
+use crate::mechanism::CrankLinkage;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::record::digest::{ProblemError, digest};
 use crate::record::{AngleErrorRecord, Candidate, Cost, CurveErrorRecord, FORMAT, MET_TOLERANCE, Record};
@@ -419,7 +419,7 @@ impl Comparison<'_> {
     }
 
     /// Checks that the crank angles are the prescribed ones, in whichever direction the timing lets them run.
-    fn timing(&mut self, linkage: &OneLoop, crank_deg: &[f64], scale: f64) {
+    fn timing(&mut self, linkage: &CrankLinkage, crank_deg: &[f64], scale: f64) {
         let Timing::Prescribed { offset, .. } = self.problem.task().timing() else { return };
         let Some(written) = &self.problem.spec().task.timing else { return };
         let task = self.problem.task();

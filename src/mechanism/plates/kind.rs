@@ -4,7 +4,7 @@
 //! implements [`Kind`], and an arm of [`kind_of`].
 
 use super::{Guide, Joint, Link, Pin, Placement, Reach, Sizes, Stretch};
-use crate::mechanism::{Complex, LoopJoints, OneLoop, nearest_share};
+use crate::mechanism::{Complex, CrankLinkage, LoopJoints, nearest_share};
 
 /// A slot of a plate, as the line between the centres of its round ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,10 +78,10 @@ pub(super) trait Kind {
 }
 
 /// Returns a linkage as the plates of its kind.
-pub(super) fn kind_of(linkage: &OneLoop) -> &dyn Kind {
+pub(super) fn kind_of(linkage: &CrankLinkage) -> &dyn Kind {
     match linkage {
-        OneLoop::FourBar(linkage) => linkage,
-        OneLoop::SliderCrank(linkage) => linkage,
-        OneLoop::InvertedSliderCrank(linkage) => linkage,
+        CrankLinkage::FourBar(linkage) => linkage,
+        CrankLinkage::SliderCrank(linkage) => linkage,
+        CrankLinkage::InvertedSliderCrank(linkage) => linkage,
     }
 }

@@ -56,7 +56,7 @@ pub use motion::{Reach, Stretch};
 pub use outline::Edge;
 pub use parts::Parts;
 
-use crate::mechanism::{Complex, FourBar, LoopJoints, OneLoop, bounding_box};
+use crate::mechanism::{Complex, CrankLinkage, FourBar, LoopJoints, bounding_box};
 use std::f64::consts::PI;
 
 /// Distance, as a part of the plate's size (hull and radius), below which two holes coincide and a corner of the hull
@@ -272,7 +272,7 @@ impl Plate {
     }
 
     /// Returns the placement of the plate at a position of the linkage.
-    pub fn placement(&self, linkage: impl Into<OneLoop>, joints: impl Into<LoopJoints>) -> Placement {
+    pub fn placement(&self, linkage: impl Into<CrankLinkage>, joints: impl Into<LoopJoints>) -> Placement {
         kind::kind_of(&linkage.into()).placement(self.link, &joints.into())
     }
 

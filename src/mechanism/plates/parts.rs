@@ -2,7 +2,7 @@
 
 use super::kind::kind_of;
 use super::{Guide, Joint, Link, Pin, Placement, Plate, Reach, Sizes, Slot, Stretch};
-use crate::mechanism::{Complex, LoopJoints, OneLoop};
+use crate::mechanism::{Complex, CrankLinkage, LoopJoints};
 use std::f64::consts::TAU;
 
 /// Steps of the search for the largest hole: each halves the interval.
@@ -11,14 +11,14 @@ const HALVINGS: usize = 60;
 /// The parts that a linkage is built from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parts {
-    linkage: OneLoop,
+    linkage: CrankLinkage,
     guide: Option<Guide>,
 }
 
 impl Parts {
     /// Returns the parts of a linkage for a motion; the slot of a crank that turns fully is long enough for the whole turn.
     /// `None` if a slider's loop is open in the motion.
-    pub fn new(linkage: impl Into<OneLoop>, sizes: Sizes, motion: &[Stretch]) -> Option<Self> {
+    pub fn new(linkage: impl Into<CrankLinkage>, sizes: Sizes, motion: &[Stretch]) -> Option<Self> {
         let linkage = linkage.into();
         let kind = kind_of(&linkage);
         if !kind.links().contains(&Link::Block) {
@@ -33,7 +33,7 @@ impl Parts {
     }
 
     /// Returns the linkage.
-    pub fn linkage(&self) -> &OneLoop {
+    pub fn linkage(&self) -> &CrankLinkage {
         &self.linkage
     }
 
@@ -107,23 +107,23 @@ impl Parts {
 }
 
 /// Returns the joints whose distances over the motion matter, the coupler point among them.
-pub(crate) fn points(linkage: &OneLoop) -> &'static [Joint] {
+pub(crate) fn points(linkage: &CrankLinkage) -> &'static [Joint] {
     kind_of(linkage).points()
 }
 
 /// Returns the pins of a linkage.
-pub(crate) fn pins(linkage: &OneLoop) -> &'static [Pin] {
+pub(crate) fn pins(linkage: &CrankLinkage) -> &'static [Pin] {
     kind_of(linkage).pins()
 }
 
 /// Computes how far joints move within a stretch, from the position in its middle; `None` if the loop is open there.
-pub(crate) fn reach(linkage: &OneLoop, stretch: &Stretch) -> Option<(LoopJoints, Reach)> {
+pub(crate) fn reach(linkage: &CrankLinkage, stretch: &Stretch) -> Option<(LoopJoints, Reach)> {
     let at = linkage.joints_with(stretch.middle(), stretch.assembly)?;
     Some((at, kind_of(linkage).reach(stretch, &at)))
 }
 
 /// Returns the place of a joint at a position; `None` of a guide pin, which depends on the block.
-pub(crate) fn joint_at(linkage: &OneLoop, joint: Joint, at: &LoopJoints) -> Option<Complex> {
+pub(crate) fn joint_at(linkage: &CrankLinkage, joint: Joint, at: &LoopJoints) -> Option<Complex> {
     match joint {
         Joint::A => Some(linkage.crank_pivot()),
         Joint::B => Some(linkage.second_pivot().unwrap_or(at.joints.follower_pin)),
@@ -153,7 +153,11 @@ fn nearest(parts: &Parts) -> f64 {
 /// Computes the largest diameter of the holes, at most `most`, for which the holes and the slot of every plate of a linkage
 /// with a slider are at least `apart` diameters from each other, with a margin as wide as a hole. 0 if there is none; `None`
 /// if the loop is open in the motion.
-pub(crate) fn largest_hole(linkage: &OneLoop, motion: &[Stretch], (most, apart): (f64, f64)) -> Option<f64> {
+pub(crate) fn largest_hole(
+    linkage: &CrankLinkage,
+    motion: &[Stretch],
+    (most, apart): (f64, f64),
+) -> Option<f64> {
     let fits = |hole: f64| -> Option<bool> {
         let parts = Parts::new(linkage, Sizes { hole, margin: hole }, motion)?;
         Some(nearest(&parts) >= apart * hole)

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::mechanism::{
-    AssemblyMode, InputRange, InvertedSliderCrank, InvertedSliderCrankParameters, LoopKind, SliderCrank,
+    AssemblyMode, InputRange, InvertedSliderCrank, InvertedSliderCrankParameters, LinkageKind, SliderCrank,
     SliderCrankParameters, cross, dot,
 };
 use crate::numbers::arithmetic::streams::{stream, uniform};
@@ -15,7 +15,7 @@ fn slider_crank(
     line_deg: f64,
     [x, y]: [f64; 2],
     assembly: AssemblyMode,
-) -> OneLoop {
+) -> CrankLinkage {
     let normal = Complex::from_polar(height, line_deg.to_radians()) * Complex::i();
     SliderCrank::new(SliderCrankParameters {
         crank_pivot: [3.0, -2.0],
@@ -31,7 +31,7 @@ fn slider_crank(
     .into()
 }
 
-fn inverted([g, a, h]: [f64; 3], [x, y]: [f64; 2], assembly: AssemblyMode) -> OneLoop {
+fn inverted([g, a, h]: [f64; 3], [x, y]: [f64; 2], assembly: AssemblyMode) -> CrankLinkage {
     InvertedSliderCrank::new(InvertedSliderCrankParameters {
         crank_pivot: [3.0, -2.0],
         block_pivot: [3.0 + 0.6 * g, -2.0 + 0.8 * g],
@@ -46,7 +46,7 @@ fn inverted([g, a, h]: [f64; 3], [x, y]: [f64; 2], assembly: AssemblyMode) -> On
 }
 
 /// Linkages of both kinds with a motion: cranks that turn fully and that rock, in line and offset, either assembly.
-fn linkages() -> Vec<(OneLoop, Vec<Stretch>)> {
+fn linkages() -> Vec<(CrankLinkage, Vec<Stretch>)> {
     let (plus, minus) = (AssemblyMode::Plus, AssemblyMode::Minus);
     let full = [
         slider_crank([30.0, 90.0, 10.0], 0.0, [40.0, 15.0], plus),
@@ -61,17 +61,17 @@ fn linkages() -> Vec<(OneLoop, Vec<Stretch>)> {
         (slider_crank([70.0, 60.0, 30.0], 20.0, [30.0, 10.0], plus), [2.2, 3.4]),
         (inverted([80.0, 70.0, 30.0], [60.0, 50.0], minus), [2.5, 4.6]),
     ];
-    let turn = |linkage: OneLoop| {
+    let turn = |linkage: CrankLinkage| {
         (linkage, vec![Stretch { from: 0.4, to: 0.4 + TAU, assembly: linkage.assembly() }])
     };
-    let part = |(linkage, [from, to]): (OneLoop, [f64; 2])| {
+    let part = |(linkage, [from, to]): (CrankLinkage, [f64; 2])| {
         (linkage, vec![Stretch { from, to, assembly: linkage.assembly() }])
     };
     full.into_iter().map(turn).chain(rocking.into_iter().map(part)).collect()
 }
 
 /// Positions of a motion, 360 of each stretch and its ends.
-fn positions(linkage: &OneLoop, motion: &[Stretch]) -> Vec<LoopJoints> {
+fn positions(linkage: &CrankLinkage, motion: &[Stretch]) -> Vec<LoopJoints> {
     let at = |stretch: &Stretch, i: u32| {
         let angle = stretch.from + (stretch.to - stretch.from) * f64::from(i) / 360.0;
         linkage.joints_with(angle, stretch.assembly).expect("it closes")
@@ -225,7 +225,7 @@ fn the_travel_of_a_centric_slider_crank_is_twice_its_crank() {
 
 #[test]
 fn a_long_lever_lengthens_the_block_and_a_point_in_the_slot_has_no_hole() {
-    let turn = |linkage: OneLoop| [Stretch { from: 0.0, to: TAU, assembly: linkage.assembly() }];
+    let turn = |linkage: CrankLinkage| [Stretch { from: 0.0, to: TAU, assembly: linkage.assembly() }];
     let arm = inverted([200.0, 20.0, 100.0], [95.0, 60.0], AssemblyMode::Plus);
     let parts = Parts::new(arm, SIZES, &turn(arm)).expect("it closes");
     assert_eq!(parts.guide().map(|guide| 2.0 * guide.half), Some(50.0));
@@ -238,7 +238,7 @@ fn a_long_lever_lengthens_the_block_and_a_point_in_the_slot_has_no_hole() {
 
 #[test]
 fn holes_shrink_where_the_slot_comes_near_them_and_vanish_where_it_meets_them() {
-    let turn = |linkage: OneLoop| [Stretch { from: 0.0, to: TAU, assembly: linkage.assembly() }];
+    let turn = |linkage: CrankLinkage| [Stretch { from: 0.0, to: TAU, assembly: linkage.assembly() }];
     for b in [90.0, 40.0, 31.0] {
         let linkage = slider_crank([30.0, b, 0.0], 0.0, [10.0, 15.0], AssemblyMode::Plus);
         let hole = parts::largest_hole(&linkage, &turn(linkage), (4.0, 3.0)).expect("it closes");
@@ -263,6 +263,6 @@ fn a_loop_that_is_open_in_the_motion_has_no_parts() {
         let whole = [Stretch { from: 0.0, to: TAU, assembly: AssemblyMode::Plus }];
         assert_eq!(Parts::new(linkage, SIZES, &whole), None);
         assert_eq!(Parts::new(linkage, SIZES, &[]), None);
-        assert_ne!(linkage.kind(), LoopKind::FourBar);
+        assert_ne!(linkage.kind(), LinkageKind::FourBar);
     }
 }

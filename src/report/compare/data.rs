@@ -1,7 +1,7 @@
 //! A comparison as CSV and JSON, for spreadsheets and scripts: every number to the last digit.
 
 use super::{Comparison, LeftOut, Ranked, SortKey};
-use crate::mechanism::{OneLoop, Unit};
+use crate::mechanism::{CrankLinkage, Unit};
 use crate::record::{Candidate, Tool};
 use crate::report::csv::{Column, OF_MOTION, cells, figures, names, parameters, parameters_of, written};
 use crate::report::text::{cell, exact};
@@ -103,7 +103,7 @@ struct Row<'a> {
     /// The motion over which the transmission angle is judged.
     transmission_over: &'static str,
     unit: Option<&'static str>,
-    linkage: &'a OneLoop,
+    linkage: &'a CrankLinkage,
     /// The crank angle at each point, degrees.
     crank_deg: &'a [f64],
     defects: &'a [Defect],

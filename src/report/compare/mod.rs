@@ -9,7 +9,7 @@
 
 use super::scene::{Bounds, SAMPLES, circuits};
 use super::text::clean;
-use crate::mechanism::{OneLoop, Unit};
+use crate::mechanism::{CrankLinkage, Unit};
 use crate::record::Candidate;
 use crate::task::TaskKind;
 use crate::task::spec::{BodySpec, Measure};
@@ -289,7 +289,7 @@ pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) ->
 
 impl Comparison {
     /// Iterates over the linkages, best first.
-    fn linkages(&self) -> impl Iterator<Item = &OneLoop> {
+    fn linkages(&self) -> impl Iterator<Item = &CrankLinkage> {
         self.rows.iter().map(|row| &row.entry.candidate.linkage)
     }
 

@@ -1,7 +1,7 @@
 //! A comparison as text tables for a terminal.
 
 use super::{Comparison, Ranked, SortKey};
-use crate::mechanism::OneLoop;
+use crate::mechanism::CrankLinkage;
 use crate::report::csv::{Parameter, names, parameters_of};
 use crate::report::grid::Align::{Left, Right};
 use crate::report::grid::{Colour, Grid, Ink, plain, verdict};
@@ -181,7 +181,7 @@ impl Comparison {
 /// Returns a parameter of a linkage with its text; signs are `+1` or `-1`. NaN and no text where the kind has none.
 pub(super) fn parameter(
     (name, of): &Parameter,
-    linkage: &OneLoop,
+    linkage: &CrankLinkage,
     length: impl Fn(f64) -> String,
 ) -> (f64, String) {
     let Some(value) = of(linkage) else { return (f64::NAN, String::new()) };

@@ -37,7 +37,7 @@ pub use settings::{Refusal, Settings};
 pub use subject::Subject;
 
 use crate::files::linkage_file;
-use crate::mechanism::OneLoop;
+use crate::mechanism::CrankLinkage;
 use crate::mechanism::analysis::driven::{MechanismRequest, analyze_mechanism};
 use crate::mechanism::analysis::{Request, analyze, full_turn};
 use crate::mechanism::four_bar::motion::CrankMotion;
@@ -108,7 +108,7 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
                 subject.frame_deg.map(|deg| format!("the body's angle is coupler_deg + {}", exact(deg))),
             );
             match linkage {
-                OneLoop::FourBar(linkage) => {
+                CrankLinkage::FourBar(linkage) => {
                     let methods = Vec::new();
                     let all_configurations = false;
                     analysis_csv(&analyze(&Request {
@@ -121,7 +121,7 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
                         all_configurations,
                     }))
                 }
-                OneLoop::SliderCrank(_) | OneLoop::InvertedSliderCrank(_) => {
+                CrankLinkage::SliderCrank(_) | CrankLinkage::InvertedSliderCrank(_) => {
                     let linkage = linkage.into();
                     let request = MechanismRequest { name, unit, linkage, crank_deg, input };
                     mechanism_csv(&analyze_mechanism(&request))

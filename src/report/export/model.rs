@@ -4,7 +4,7 @@ use super::holes::Holes;
 use super::settings::{Refusal, Settings};
 use super::{Format, Subject};
 use crate::mechanism::plates::{Joint, Link, Parts, Placement, Plate, Sizes, parts};
-use crate::mechanism::{AssemblyMode, Complex, FourBar, LinkageError, LoopJoints, OneLoop, Unit, point};
+use crate::mechanism::{AssemblyMode, Complex, CrankLinkage, FourBar, LinkageError, LoopJoints, Unit, point};
 use crate::report::body;
 use crate::report::scene::{Bounds, circuits_through, middle_position};
 use crate::report::text::{brief, exact};
@@ -27,7 +27,7 @@ pub(super) struct Model<'a> {
     pub(super) subject: &'a Subject,
     pub(super) settings: &'a Settings,
     /// The linkage in millimetres.
-    pub(super) linkage: OneLoop,
+    pub(super) linkage: CrankLinkage,
     /// Its parts; `None` if the loop of a slider is open in the motion, so that its slot has no length.
     pub(super) parts: Option<Parts>,
     /// The length of one unit of the file in millimetres, at this scale.
@@ -349,7 +349,7 @@ pub(super) fn unit_of(subject: &Subject, settings: &Settings) -> Result<Option<U
 }
 
 /// Returns a linkage with all lengths multiplied by a factor.
-pub(super) fn scaled_loop(linkage: &OneLoop, factor: f64) -> Result<OneLoop, Refusal> {
+pub(super) fn scaled_loop(linkage: &CrankLinkage, factor: f64) -> Result<CrankLinkage, Refusal> {
     linkage.scaled(factor).map_err(|e| too_large(&e, factor))
 }
 
@@ -361,9 +361,9 @@ fn too_large(error: &LinkageError, factor: f64) -> Refusal {
 }
 
 /// Returns the default diameter of holes, at most `largest`: less where holes are near each other or near a slot.
-fn usual_hole(linkage: &OneLoop, subject: &Subject, largest: f64) -> f64 {
+fn usual_hole(linkage: &CrankLinkage, subject: &Subject, largest: f64) -> f64 {
     match linkage {
-        OneLoop::FourBar(linkage) => largest.min(HOLE_BESIDE * nearest_holes(linkage)),
+        CrankLinkage::FourBar(linkage) => largest.min(HOLE_BESIDE * nearest_holes(linkage)),
         _ => {
             let found = parts::largest_hole(linkage, &subject.motion, (largest, 1.0 / HOLE_BESIDE));
             // Without room for any hole, drawings have one all the same, and plates are refused.

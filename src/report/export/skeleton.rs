@@ -2,7 +2,7 @@
 
 use super::model::Model;
 use crate::mechanism::plates::{Edge, Link};
-use crate::mechanism::{Complex, LoopJoints, OneLoop};
+use crate::mechanism::{Complex, CrankLinkage, LoopJoints};
 
 /// Half the height of a drawn block, in diameters of a hole.
 const HALF_BLOCK: f64 = 1.0;
@@ -47,9 +47,9 @@ impl Skeleton {
             block: block(model, at),
         };
         match model.linkage {
-            OneLoop::FourBar(_) => plain,
-            OneLoop::SliderCrank(_) => Skeleton { line: line(model, at, None), ..plain },
-            OneLoop::InvertedSliderCrank(_) => Skeleton {
+            CrankLinkage::FourBar(_) => plain,
+            CrankLinkage::SliderCrank(_) => Skeleton { line: line(model, at, None), ..plain },
+            CrankLinkage::InvertedSliderCrank(_) => Skeleton {
                 joints: plain.joints.into_iter().filter(|(name, _)| *name != "D").collect(),
                 coupler: vec![c, p],
                 line: line(model, at, Some(c)),

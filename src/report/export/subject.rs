@@ -4,7 +4,7 @@ use crate::files::linkage_file::{Carried, LinkageFile};
 use crate::files::name;
 use crate::judge::practicality::Sweep;
 use crate::mechanism::plates::Stretch;
-use crate::mechanism::{AssemblyMode, OneLoop, Unit};
+use crate::mechanism::{AssemblyMode, CrankLinkage, Unit};
 use crate::record::{Candidate, Record};
 use crate::report::scene::positions_at;
 use crate::report::text::clean;
@@ -21,7 +21,7 @@ pub struct Subject {
     /// The unit of its lengths.
     pub unit: Option<Unit>,
     /// The linkage.
-    pub linkage: OneLoop,
+    pub linkage: CrankLinkage,
     /// The target points; empty without a run.
     pub target: Vec<[f64; 2]>,
     /// Whether the target is a closed curve.
@@ -64,7 +64,7 @@ impl Subject {
     }
 
     /// Returns the subject of a linkage without a run.
-    pub fn of_linkage<L: Into<OneLoop> + Copy>(file: &LinkageFile<L>) -> Self {
+    pub fn of_linkage<L: Into<CrankLinkage> + Copy>(file: &LinkageFile<L>) -> Self {
         let linkage = file.linkage.into();
         Subject {
             name: file.name.clone(),

@@ -2,7 +2,7 @@
 
 use super::extras::{Shown, extras, first_key};
 use super::motion::Drive;
-use crate::mechanism::{AssemblyMode, MAX_MAGNITUDE, OneLoop};
+use crate::mechanism::{AssemblyMode, CrankLinkage, MAX_MAGNITUDE};
 use crate::record::{Candidate, ProblemRecord, Record};
 use serde::Serialize;
 
@@ -61,7 +61,7 @@ struct Mechanism<'a> {
     key: String,
     /// The name for readers.
     name: String,
-    linkage: &'a OneLoop,
+    linkage: &'a CrankLinkage,
     drive: Drive,
     /// The angle from C -> D to the body's x axis, in degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -135,7 +135,7 @@ impl<'a> Mechanism<'a> {
     fn new(
         key: String,
         name: String,
-        (linkage, crank_deg, t1_at): (&'a OneLoop, &[f64], &[AssemblyMode]),
+        (linkage, crank_deg, t1_at): (&'a CrankLinkage, &[f64], &[AssemblyMode]),
         worst: Option<usize>,
         chosen: &[usize],
     ) -> Self {

@@ -5,7 +5,7 @@ use super::page::paragraph;
 use super::table::minus;
 use crate::files::linkage_file::any_to_toml;
 use crate::mechanism::Unit;
-use crate::mechanism::{LoopKind, OneLoop};
+use crate::mechanism::{CrankLinkage, LinkageKind};
 use crate::record::{Candidate, Record};
 use crate::report::text::{clean, significant};
 use crate::report::{output, words};
@@ -23,11 +23,11 @@ pub(super) fn dimensions(record: &Record, c: &Candidate, short: &str) -> Markup 
         [c.linkage.ground().unwrap_or(0.0), offset.re, offset.im].map(|value| minus(&significant(value, 6)));
     let place = format!("P lies {along}{unit} along and {across}{unit} across");
     let text = match c.linkage.kind() {
-        LoopKind::FourBar => {
+        LinkageKind::FourBar => {
             format!("Ground AB {ground}{unit}; {place} from C to D (positive: to the left).")
         }
-        LoopKind::SliderCrank => format!("{place} from C to D (positive: to the left)."),
-        LoopKind::InvertedSliderCrank => {
+        LinkageKind::SliderCrank => format!("{place} from C to D (positive: to the left)."),
+        LinkageKind::InvertedSliderCrank => {
             format!("Ground AB {ground}{unit}; {place} from C, along the rod (positive: to the left).")
         }
     };
@@ -63,7 +63,7 @@ pub(super) fn of_alternatives(c: &Candidate) -> Markup {
     }
 }
 
-fn block(name: &str, unit: Option<Unit>, linkage: &OneLoop) -> Markup {
+fn block(name: &str, unit: Option<Unit>, linkage: &CrankLinkage) -> Markup {
     html! { pre.dimensions { (without_comments(&any_to_toml(name, unit, linkage))) } }
 }
 

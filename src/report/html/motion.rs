@@ -1,7 +1,7 @@
 //! The drive of a mechanism on the page: the input that moves it, its range, and the places of the points in it.
 
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, InputRange, OneLoop};
+use crate::mechanism::{AssemblyMode, CrankLinkage, InputRange};
 use crate::report::scene::{middle_position, positions_at};
 use serde::Serialize;
 
@@ -34,7 +34,7 @@ pub struct Drive {
 
 impl Drive {
     /// Returns the drive of a linkage that passes the points at these crank angles (degrees) and assemblies.
-    pub fn new(linkage: impl Into<OneLoop>, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Self {
+    pub fn new(linkage: impl Into<CrankLinkage>, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Self {
         let linkage = linkage.into();
         let mobility = linkage.mobility();
         let mut positions = positions_at(crank_deg, t1_at);

@@ -12,7 +12,7 @@ use crate::judge::assess::assess;
 use crate::judge::loosen::judged_under;
 use crate::judge::rank::{compare, distinct, distinct_places};
 use crate::judge::warm::start_at;
-use crate::mechanism::OneLoop;
+use crate::mechanism::CrankLinkage;
 use crate::record::Candidate;
 use crate::synthesis::constants::live::{EFFORT, EVALUATIONS, FIRST_LOOK, FOLLOWING};
 use crate::synthesis::multistart::{judged, polish};
@@ -56,7 +56,7 @@ impl Session {
 
     /// Begins anew with a linkage, each point met where it comes nearest, and holds it. Without effect if it cannot be
     /// assembled.
-    pub fn begin(&mut self, problem: &Problem, linkage: &OneLoop) {
+    pub fn begin(&mut self, problem: &Problem, linkage: &CrankLinkage) {
         let positions = nearest_positions(problem, linkage);
         let judged = positions.and_then(|(crank_deg, t1_at)| assess(problem, linkage, &crank_deg, &t1_at));
         if let Some(candidate) = judged {
@@ -156,7 +156,7 @@ mod tests {
     use super::*;
     use crate::app::job::run::{Context, Job, run};
     use crate::files::problem_file::parse;
-    use crate::mechanism::LoopKind;
+    use crate::mechanism::LinkageKind;
     use crate::task::AngleOffset;
     use crate::task::spec::TimingSpec;
     use std::sync::atomic::AtomicBool;
@@ -211,12 +211,12 @@ mod tests {
     fn sliders_follow_and_go_where_they_are_not_searched_for() {
         let cancel = AtomicBool::new(false);
         let budget = Budget::new(&cancel, None);
-        let of_kind = |problem: &Problem, kind: &[LoopKind]| {
+        let of_kind = |problem: &Problem, kind: &[LinkageKind]| {
             let mut spec = problem.spec().clone();
             spec.design.mechanism = kind.to_vec();
             Problem::new(spec).expect("a task")
         };
-        for kind in [LoopKind::SliderCrank, LoopKind::InvertedSliderCrank] {
+        for kind in [LinkageKind::SliderCrank, LinkageKind::InvertedSliderCrank] {
             let before = of_kind(&egg(24, 0, 0.0), &[kind]);
             let mut session = Session::default();
             session.join(&before, searched(&before));

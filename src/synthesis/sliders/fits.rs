@@ -5,7 +5,7 @@ use crate::judge::assess::assess_on_curve;
 use crate::judge::unwrapped::unwrapped;
 use crate::judge::warm::direction_and_offset;
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, Complex, LoopKind};
+use crate::mechanism::{AssemblyMode, Complex, LinkageKind};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, finish, solve};
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord};
@@ -80,7 +80,7 @@ fn frame_of(problem: &Problem, target: &Target, candidate: &Candidate) -> f64 {
 
 /// Returns a start of a slider-crank with its line seen in the sense that is nearest to its bounds.
 fn aligned(limits: &Limited, is_of_places: bool, mut start: Start) -> Start {
-    if start.kind == LoopKind::SliderCrank {
+    if start.kind == LinkageKind::SliderCrank {
         let (angle, is_turned) = limits.line_angle(start.x[5]);
         start.x[5] = angle;
         if is_turned {
@@ -192,7 +192,7 @@ impl<'a> Fits<'a> {
     /// Draws `count` starts of a path, with the misfits of those that can be laid on it.
     pub(super) fn drawn(
         &mut self,
-        (kind, limits): (LoopKind, &Limited),
+        (kind, limits): (LinkageKind, &Limited),
         count: usize,
         draws: &mut Stream,
     ) -> Vec<(f64, Start)> {

@@ -11,7 +11,7 @@
 
 use super::starts::{Start, Target};
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
-use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, Dyad, LoopKind, Pose, dot};
+use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, Dyad, LinkageKind, Pose, dot};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::synthesis::constants::sliders::{ACROSS, FOURS};
 use crate::synthesis::dyads::{Driving, driving_dyad, pin_on_line, pin_on_line_across};
@@ -51,7 +51,7 @@ impl<'a> Guided<'a> {
     pub(super) fn starts(
         &self,
         target: &Target,
-        kind: LoopKind,
+        kind: LinkageKind,
         first: bool,
         stream: &mut Stream,
     ) -> Vec<Start> {
@@ -87,8 +87,8 @@ impl<'a> Guided<'a> {
 
     /// Returns the sliders of a kind: the best of all, in the first round, those of sets of four poses, and those of drawn
     /// lines.
-    fn sliders(&self, kind: LoopKind, first: bool, stream: &mut Stream) -> Vec<Dyad> {
-        let is_inverted = kind == LoopKind::InvertedSliderCrank;
+    fn sliders(&self, kind: LinkageKind, first: bool, stream: &mut Stream) -> Vec<Dyad> {
+        let is_inverted = kind == LinkageKind::InvertedSliderCrank;
         let seen: Vec<Pose> =
             self.poses.iter().map(|pose| if is_inverted { pose.inverse() } else { *pose }).collect();
         let mut sliders = Vec::new();
@@ -122,8 +122,8 @@ impl<'a> Guided<'a> {
         let mut x = shape.unknowns(offset, 0.0);
         x[FRAME] = frame;
         let kind = match shape.closure {
-            Closure::Line { .. } => LoopKind::SliderCrank,
-            Closure::Block { .. } => LoopKind::InvertedSliderCrank,
+            Closure::Line { .. } => LinkageKind::SliderCrank,
+            Closure::Block { .. } => LinkageKind::InvertedSliderCrank,
         };
         let turns = shape.linkage(assembly).ok()?.mobility().input_turns_fully();
         Some(Start { kind, x, positions, assembly, direction: crank.direction, turns })

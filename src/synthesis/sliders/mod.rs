@@ -28,7 +28,7 @@ use super::family::{climb, freedom_within, one_is_enough};
 use super::multistart::{RoundOutcome, by_merit};
 use super::states::{RepeatedState, SearchState};
 use crate::judge::rank::{exact_cost, searched, sort};
-use crate::mechanism::LoopKind;
+use crate::mechanism::LinkageKind;
 use crate::numbers::arithmetic::streams::stream;
 use crate::record::{Candidate, Evaluations, Reason};
 use crate::task::Problem;
@@ -52,7 +52,7 @@ pub(super) struct Sliders<'a> {
     target: Target,
     /// The starts of a motion.
     guided: Option<Guided<'a>>,
-    kinds: Vec<(LoopKind, Limited)>,
+    kinds: Vec<(LinkageKind, Limited)>,
     exact: f64,
     /// The number of free parameters that are left when all targets are met.
     freedom: usize,
@@ -70,9 +70,9 @@ pub(super) fn beside_four_bars(context: Context<'_>, limit: u64) -> (Vec<Candida
         return (Vec::new(), Evaluations::default());
     }
     let has_output =
-        |kind: &LoopKind| spec.task.output.as_ref().is_none_or(|output| output.output.is_of(*kind));
-    let slides = |kind: &LoopKind| *kind != LoopKind::FourBar && has_output(kind);
-    let kinds: Vec<LoopKind> = LoopKind::ALL.into_iter().filter(slides).collect();
+        |kind: &LinkageKind| spec.task.output.as_ref().is_none_or(|output| output.output.is_of(*kind));
+    let slides = |kind: &LinkageKind| *kind != LinkageKind::FourBar && has_output(kind);
+    let kinds: Vec<LinkageKind> = LinkageKind::ALL.into_iter().filter(slides).collect();
     (spec.design.mechanism, spec.solve.candidates) = (kinds.clone(), 1);
     let Ok(within) = problem.with(spec) else { return (Vec::new(), Evaluations::default()) };
     let context = Context { keeper: None, ..context.of(&within) }.silent();
@@ -83,12 +83,12 @@ pub(super) fn beside_four_bars(context: Context<'_>, limit: u64) -> (Vec<Candida
 
 impl<'a> Sliders<'a> {
     /// Creates the search of a problem, or goes on with the one that was kept; `None` if none of the kinds has a slider.
-    pub(super) fn of(context: Context<'a>, kinds: &[LoopKind]) -> Option<Self> {
+    pub(super) fn of(context: Context<'a>, kinds: &[LinkageKind]) -> Option<Self> {
         let problem = context.problem;
         let target = Target::of(problem);
-        let kinds: Vec<(LoopKind, Limited)> = kinds
+        let kinds: Vec<(LinkageKind, Limited)> = kinds
             .iter()
-            .filter(|kind| **kind != LoopKind::FourBar)
+            .filter(|kind| **kind != LinkageKind::FourBar)
             .map(|kind| (*kind, Limited::of(problem, *kind, target.centre, target.size)))
             .collect();
         let earlier = context.keeper.and_then(|keeper| keeper.earlier().sliders.clone());
@@ -180,7 +180,7 @@ impl<'a> Sliders<'a> {
             (None, None) if known.is_empty() => {
                 let share = DRAWS / drawn_kinds.len();
                 let of_kind =
-                    |(kind, limits): &(LoopKind, Limited)| fits.drawn((*kind, limits), share, &mut draws);
+                    |(kind, limits): &(LinkageKind, Limited)| fits.drawn((*kind, limits), share, &mut draws);
                 drawn_kinds.iter().flat_map(of_kind).collect()
             }
             (None, None) => fits.hopped(limits, &known, &mut draws),
@@ -227,7 +227,7 @@ impl<'a> Sliders<'a> {
     }
 
     /// Returns the best known candidates of a kind, as starts.
-    fn known<'s>(&'s self, problem: &'s Problem, kind: LoopKind) -> impl Iterator<Item = Start> + 's {
+    fn known<'s>(&'s self, problem: &'s Problem, kind: LinkageKind) -> impl Iterator<Item = Start> + 's {
         let of_kind = self.at.found.iter().filter(move |candidate| candidate.linkage.kind() == kind);
         of_kind.take(HOP_FROM).filter_map(|candidate| start_at(problem, &self.target, candidate))
     }

@@ -14,7 +14,7 @@
 //! a g and g^2 + a^2 - h^2 alone: h is drawn.
 
 use super::starts::{Start, Target};
-use crate::mechanism::{AssemblyMode, Complex, LoopKind};
+use crate::mechanism::{AssemblyMode, Complex, LinkageKind};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::synthesis::constants::sliders::{OFFSETS, TURNS};
 use crate::task::forms::slider::ends::best_transmitting;
@@ -35,14 +35,14 @@ type Pair = (f64, f64, f64);
 pub(super) fn output_starts(
     problem: &Problem,
     (target, outputs): (&Target, &Outputs),
-    (kind, limits): (LoopKind, &Limited),
+    (kind, limits): (LinkageKind, &Limited),
     first: bool,
     stream: &mut Stream,
 ) -> Vec<Start> {
     let Timing::Prescribed { crank_angles, offset } = problem.task().timing() else { return Vec::new() };
     // A slider that moves the other way is the same linkage turned by half a turn, if the input has no reference.
     let signs = match (kind, offset) {
-        (LoopKind::SliderCrank, AngleOffset::Free) => &[1.0],
+        (LinkageKind::SliderCrank, AngleOffset::Free) => &[1.0],
         _ => problem.directions(),
     };
     let is_free = [*offset == AngleOffset::Free, limits.bounds[FRAME].0 < limits.bounds[FRAME].1];
@@ -51,14 +51,16 @@ pub(super) fn output_starts(
     for sign in signs {
         let given = crank_angles.iter().zip(&outputs.wanted).zip(&target.weights);
         let pairs: Vec<Pair> = given.map(|((delta, o), weight)| (*delta, sign * o, *weight)).collect();
-        if first && let Some(ends) = problem.spec().require.ends().filter(|_| kind == LoopKind::SliderCrank) {
+        if first
+            && let Some(ends) = problem.spec().require.ends().filter(|_| kind == LinkageKind::SliderCrank)
+        {
             for solution in of_ends(&pairs, ends, target.size) {
                 starts.extend(place.start(kind, *sign, is_free, solution));
             }
         }
         let mut solve = |offsets: [f64; 2], stream: &mut Stream| {
             let solutions = match (outputs.kind, kind) {
-                (Output::Place, LoopKind::SliderCrank) => of_line(&pairs, offsets).into_iter().collect(),
+                (Output::Place, LinkageKind::SliderCrank) => of_line(&pairs, offsets).into_iter().collect(),
                 (Output::Place, _) => of_block(&pairs, offsets, stream),
                 (Output::Angle, _) => of_angle(&pairs, offsets).into_iter().collect(),
             };
@@ -66,7 +68,7 @@ pub(super) fn output_starts(
         };
         if first && is_free == [true; 2] {
             let suggested = match (outputs.kind, kind) {
-                (Output::Place, LoopKind::SliderCrank) => offsets_of_line(&pairs),
+                (Output::Place, LinkageKind::SliderCrank) => offsets_of_line(&pairs),
                 (Output::Place, _) => offsets_of_block(&pairs),
                 (Output::Angle, _) => offsets_of_angle(&pairs),
             };
@@ -77,7 +79,7 @@ pub(super) fn output_starts(
                 |is_free: bool, reach: f64| if is_free { uniform(stream, -reach, reach) } else { 0.0 };
             let phi0 = draw(is_free[0], PI);
             let drawn = draw(is_free[1], if outputs.kind == Output::Place { REACH } else { PI });
-            let of_line = outputs.kind == Output::Place && kind == LoopKind::SliderCrank && is_free[1];
+            let of_line = outputs.kind == Output::Place && kind == LinkageKind::SliderCrank && is_free[1];
             let s0 = if of_line && below(stream, 2) == 0 { place_at(&pairs, phi0) } else { Some(drawn) };
             if let Some(s0) = s0 {
                 solve([phi0, s0], stream);
@@ -105,25 +107,27 @@ struct Placing {
 }
 
 impl Placing {
-    fn of(limits: &Limited, kind: LoopKind, output: Output) -> Placing {
+    fn of(limits: &Limited, kind: LinkageKind, output: Output) -> Placing {
         let middle = |k: usize| {
             let (low, high) = limits.bounds[k];
             if low.is_finite() && high.is_finite() { 0.5 * (low + high) } else { 0.0 }
         };
         let pivot = Complex::new(middle(0), middle(1));
         let ground = match kind {
-            LoopKind::SliderCrank => Complex::from_polar(1.0, middle(5)),
-            LoopKind::FourBar | LoopKind::InvertedSliderCrank => Complex::new(middle(3), middle(4)) - pivot,
+            LinkageKind::SliderCrank => Complex::from_polar(1.0, middle(5)),
+            LinkageKind::FourBar | LinkageKind::InvertedSliderCrank => {
+                Complex::new(middle(3), middle(4)) - pivot
+            }
         };
         let is_fixed = |k: usize| limits.bounds[k].0 == limits.bounds[k].1;
-        let is_ground_given = kind == LoopKind::InvertedSliderCrank && is_fixed(3) && is_fixed(4);
+        let is_ground_given = kind == LinkageKind::InvertedSliderCrank && is_fixed(3) && is_fixed(4);
         Placing { pivot, ground, is_ground_given, output }
     }
 
     /// Returns the start at a solution; `None` if its numbers are of no use.
     fn start(
         &self,
-        kind: LoopKind,
+        kind: LinkageKind,
         sign: f64,
         [is_input_free, is_output_free]: [bool; 2],
         Solution { offsets: [phi0, beta], shape, assembly }: Solution,

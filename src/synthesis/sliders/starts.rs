@@ -8,7 +8,7 @@
 //!
 //! *Prescribed timing.* At the drawn shape's positions A, K and Z of P = A + K e + Z u follow from linear least squares.
 
-use crate::mechanism::{AssemblyMode, Circuit, Complex, InputArc, LoopKind};
+use crate::mechanism::{AssemblyMode, Circuit, Complex, InputArc, LinkageKind};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::synthesis::atlas::{EVEN, Even, ON_ARC, OnArc, TRACED, Traced, arc_misfits, fraction};
 use crate::task::forms::slider::fit::BodyAngles;
@@ -21,7 +21,7 @@ use std::f64::consts::{PI, TAU};
 /// A start of a fit.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
-    pub(super) kind: LoopKind,
+    pub(super) kind: LinkageKind,
     pub(super) x: Unknowns,
     /// The positions of free timing.
     pub(super) positions: Positions,
@@ -129,12 +129,12 @@ fn sign(stream: &mut Stream) -> f64 {
 
 /// Draws a shape with A in the origin: a slider-crank with b = 1 and its line along the x axis, or an inverted one with
 /// a = 1 and B on the x axis.
-fn shape(stream: &mut Stream, kind: LoopKind, turns: bool) -> SliderShape {
+fn shape(stream: &mut Stream, kind: LinkageKind, turns: bool) -> SliderShape {
     let angle = uniform(stream, -PI, PI);
     let reach = log_uniform(stream, 0.05, 3.0);
     let polar = |length: f64| Complex::from_polar(reach * length, angle);
     let zero = Complex::new(0.0, 0.0);
-    if kind == LoopKind::SliderCrank {
+    if kind == LinkageKind::SliderCrank {
         let (crank, height) = if turns {
             let used = 1.0 - log_uniform(stream, 1e-3, 0.95);
             let part = log_uniform(stream, 0.02, 1.0);
@@ -169,7 +169,7 @@ struct Drawn {
 }
 
 impl Drawn {
-    fn of(stream: &mut Stream, kind: LoopKind, turns: bool) -> Option<Drawn> {
+    fn of(stream: &mut Stream, kind: LinkageKind, turns: bool) -> Option<Drawn> {
         let shape = shape(stream, kind, turns);
         let (sign, which) = (sign(stream), below(stream, 2) as u8);
         let mobility = shape.linkage(AssemblyMode::Plus).ok()?.mobility();
@@ -221,7 +221,7 @@ const SPANS: (f64, f64) = (0.08, 0.97);
 pub(super) fn free(
     problem: &Problem,
     target: &Target,
-    (kind, turns): (LoopKind, bool),
+    (kind, turns): (LinkageKind, bool),
     stream: &mut Stream,
 ) -> Option<(f64, Start)> {
     let drawn = Drawn::of(stream, kind, turns)?;
@@ -276,7 +276,7 @@ pub(super) fn free(
     let (scale, shift) = similarity(target, &drawn.shape, &positions)?;
     let turn = scale / scale.norm();
     // A coupler that swings little mimics every arc, with lengths out of all proportion.
-    let tells = target.is_closed || kind != LoopKind::SliderCrank;
+    let tells = target.is_closed || kind != LinkageKind::SliderCrank;
     let misfit = if tells { linear(target, &positions)?.misfit } else { laid.misfit };
     let start = Start {
         kind,
@@ -308,7 +308,7 @@ fn similarity(target: &Target, shape: &SliderShape, positions: &Positions) -> Op
 pub(super) fn prescribed(
     problem: &Problem,
     target: &Target,
-    (kind, turns): (LoopKind, bool),
+    (kind, turns): (LinkageKind, bool),
     stream: &mut Stream,
 ) -> Option<(f64, Start)> {
     let Timing::Prescribed { offset, .. } = problem.task().timing() else { return None };

@@ -6,7 +6,7 @@ use crate::judge::costs::marginal;
 use crate::judge::family::family;
 use crate::judge::practicality::Sweep;
 use crate::judge::practicality::sensitivity::along;
-use crate::mechanism::{LoopKind, OneLoop, Unit, xy};
+use crate::mechanism::{CrankLinkage, LinkageKind, Unit, xy};
 use crate::record::digest::NotWritten;
 use crate::record::{Candidate, ProblemRecord, Record};
 use crate::synthesis::answers::annotate;
@@ -45,7 +45,7 @@ pub fn record(
 
 /// Returns the problem that a linkage solves by itself: points of its own coupler curve over its whole range of motion,
 /// with free timing and without limits; and the linkage as its candidate. `None` if it cannot be assembled.
-pub fn own_curve(linkage: &OneLoop) -> Option<(Problem, Candidate)> {
+pub fn own_curve(linkage: &CrankLinkage) -> Option<(Problem, Candidate)> {
     let sweep = Sweep::of_linkage(*linkage)?;
     let at = along(&sweep, OWN_POINTS);
     let points = at
@@ -57,7 +57,7 @@ pub fn own_curve(linkage: &OneLoop) -> Option<(Problem, Candidate)> {
         ..RequireSpec::default()
     };
     let kind = linkage.kind();
-    let mechanism = if kind == LoopKind::FourBar { Vec::new() } else { vec![kind] };
+    let mechanism = if kind == LinkageKind::FourBar { Vec::new() } else { vec![kind] };
     let spec = ProblemSpec {
         task: TaskSpec::path(points, sweep.full_turn),
         design: DesignSpec { mechanism, ..DesignSpec::default() },

@@ -4,7 +4,8 @@ use crate::judge::assess::{assess, assess_again};
 use crate::judge::rank::compare;
 use crate::judge::warm::start_at;
 use crate::mechanism::{
-    Complex, FourBar, InvertedSliderCrank, LoopKind, NaturalCoordinates, OneLoop, SliderCrank, point, xy,
+    Complex, CrankLinkage, FourBar, InvertedSliderCrank, LinkageKind, NaturalCoordinates, SliderCrank, point,
+    xy,
 };
 use crate::record::Candidate;
 use crate::synthesis::Context;
@@ -42,12 +43,12 @@ impl Length {
     /// Returns its key in files, its value in a linkage and its place in the design table.
     fn entry(self) -> Entry {
         match self {
-            Length::Ground => ("ground", OneLoop::ground, |design| &mut design.ground),
+            Length::Ground => ("ground", CrankLinkage::ground, |design| &mut design.ground),
             Length::A => ("a", |linkage| Some(linkage.crank()), |design| &mut design.a),
-            Length::B => ("b", OneLoop::coupler, |design| &mut design.b),
+            Length::B => ("b", CrankLinkage::coupler, |design| &mut design.b),
             Length::C => ("c", |linkage| linkage.four_bar().map(FourBar::follower), |design| &mut design.c),
             Length::D => ("d", |linkage| Some(linkage.crank_side()), |design| &mut design.d),
-            Length::E => ("e", OneLoop::second_side, |design| &mut design.e),
+            Length::E => ("e", CrankLinkage::second_side, |design| &mut design.e),
         }
     }
 
@@ -62,7 +63,7 @@ impl Length {
     }
 
     /// Returns its value in a linkage; `None` of a kind that has no such length.
-    pub fn of(self, linkage: impl Into<OneLoop>) -> Option<f64> {
+    pub fn of(self, linkage: impl Into<CrankLinkage>) -> Option<f64> {
         (self.entry().1)(&linkage.into())
     }
 
@@ -76,7 +77,7 @@ impl Length {
     }
 }
 
-type Entry = (&'static str, fn(&OneLoop) -> Option<f64>, fn(&mut DesignSpec) -> &mut Option<Limits>);
+type Entry = (&'static str, fn(&CrankLinkage) -> Option<f64>, fn(&mut DesignSpec) -> &mut Option<Limits>);
 
 /// The dimensions that are fixed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -147,7 +148,7 @@ pub fn refit(
     evaluations: u64,
 ) -> (Option<Candidate>, u64) {
     let problem = context.problem;
-    if candidate.linkage.kind() != LoopKind::FourBar {
+    if candidate.linkage.kind() != LinkageKind::FourBar {
         return fit_slider(context, candidate, fixed, evaluations);
     }
     let design = &problem.spec().design;
@@ -223,7 +224,7 @@ fn fit_slider(
 
 /// Returns a linkage with a slider with its fixed pivots and lengths at exactly their fixed values: the ground by moving B along
 /// it (A if B is fixed), d and e by moving P. `None` if they are off by more than the rounding of a fit.
-fn slider_to_the_digit(linkage: &OneLoop, fixed: &Fixed) -> Option<OneLoop> {
+fn slider_to_the_digit(linkage: &CrankLinkage, fixed: &Fixed) -> Option<CrankLinkage> {
     if !are_near(linkage, fixed) {
         return None;
     }
@@ -242,15 +243,15 @@ fn slider_to_the_digit(linkage: &OneLoop, fixed: &Fixed) -> Option<OneLoop> {
     let (crank, assembly) = (fixed.get(Length::A).unwrap_or(linkage.crank()), linkage.assembly());
     let pivot = fixed.crank_pivot.map_or(linkage.crank_pivot(), point);
     match linkage {
-        OneLoop::FourBar(_) => None,
-        OneLoop::SliderCrank(l) => {
+        CrankLinkage::FourBar(_) => None,
+        CrankLinkage::SliderCrank(l) => {
             let coupler = fixed.get(Length::B).unwrap_or(l.coupler());
             let line = (l.line_point(), l.line_direction().arg());
             let offset = offset(Some(coupler));
             let made = SliderCrank::from_parts(pivot, [crank, coupler], line, offset, assembly).ok()?;
-            Some(OneLoop::SliderCrank(made))
+            Some(CrankLinkage::SliderCrank(made))
         }
-        OneLoop::InvertedSliderCrank(l) => {
+        CrankLinkage::InvertedSliderCrank(l) => {
             let mut pivots = [pivot, fixed.follower_pivot.map_or(l.block_pivot(), point)];
             let along = pivots[1] - pivots[0];
             let (ground, angle) = (fixed.get(Length::Ground), fixed.ground_angle_deg);
@@ -268,13 +269,13 @@ fn slider_to_the_digit(linkage: &OneLoop, fixed: &Fixed) -> Option<OneLoop> {
             }
             let made =
                 InvertedSliderCrank::from_parts(pivots, crank, l.offset(), offset(None), assembly).ok()?;
-            Some(OneLoop::InvertedSliderCrank(made))
+            Some(CrankLinkage::InvertedSliderCrank(made))
         }
     }
 }
 
 /// Returns whether the fixed lengths of a linkage are at their values up to the rounding of a fit.
-fn are_near(linkage: &OneLoop, fixed: &Fixed) -> bool {
+fn are_near(linkage: &CrankLinkage, fixed: &Fixed) -> bool {
     /// The feasibility tolerance of a fit.
     const HAIR: f64 = 1e-6;
     let near = |(length, value): &(Length, f64)| {
@@ -295,7 +296,7 @@ fn on_its_circle(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
 /// Returns the linkage with its fixed lengths at exactly their fixed values, which a fit meets only approximately: the
 /// ground by moving B (A if B is fixed) along it. `None` if they are off by more than the rounding of a fit.
 fn to_the_digit(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
-    if !are_near(&OneLoop::FourBar(*linkage), fixed) {
+    if !are_near(&CrankLinkage::FourBar(*linkage), fixed) {
         return None;
     }
     let mut n: NaturalCoordinates = linkage.natural_coordinates();

@@ -6,7 +6,7 @@ mod sliders;
 use super::model::Model;
 use super::settings::Refusal;
 use crate::files::generator::mark;
-use crate::mechanism::OneLoop;
+use crate::mechanism::CrankLinkage;
 use crate::report::text::exact;
 
 /// A parameter: name, value, and what it is.
@@ -36,9 +36,9 @@ pub(super) fn script(model: &Model<'_>) -> Result<String, Refusal> {
     };
     let parts = model.parts()?;
     let own = match &model.linkage {
-        OneLoop::FourBar(linkage) => four_bar::script(linkage),
-        OneLoop::SliderCrank(linkage) => sliders::slider_crank(linkage, parts),
-        OneLoop::InvertedSliderCrank(linkage) => sliders::inverted_slider_crank(linkage, parts),
+        CrankLinkage::FourBar(linkage) => four_bar::script(linkage),
+        CrankLinkage::SliderCrank(linkage) => sliders::slider_crank(linkage, parts),
+        CrankLinkage::InvertedSliderCrank(linkage) => sliders::inverted_slider_crank(linkage, parts),
     };
     let common = [
         ("hole", model.holes.pins, "diameter of the holes"),

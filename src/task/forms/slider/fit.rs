@@ -30,7 +30,7 @@ use super::output::Outputs;
 use super::shape::{Closure, FRAME, Miss, OFFSET, SHAPE, SliderShape, UNKNOWNS, Unknowns};
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::{ways_round, wrapped};
-use crate::mechanism::{AssemblyMode, Complex, LoopKind, turned, xy};
+use crate::mechanism::{AssemblyMode, Complex, LinkageKind, turned, xy};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, EachConstraint, MOST_OWN, PointBlock,
@@ -68,7 +68,7 @@ impl BodyAngles {
 #[derive(Clone, Debug)]
 pub struct SliderFit<'a, const R: usize> {
     /// The kind.
-    pub kind: LoopKind,
+    pub kind: LinkageKind,
     /// The points; none of a function.
     pub points: &'a [Complex],
     /// Their weights.

@@ -15,7 +15,7 @@ use super::regions::Regions;
 use super::shape::{Closure, FRAME, OFFSET, SHAPE, SliderShape, UNKNOWNS};
 use super::sides::Sides;
 use super::swept::BoxLimits;
-use crate::mechanism::{AssemblyMode, Complex, LoopKind, cross, dot, turned};
+use crate::mechanism::{AssemblyMode, Complex, LinkageKind, cross, dot, turned};
 use crate::numbers::optimise::levenberg_marquardt::MOST_OWN;
 use crate::task::spec::{DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, Limits, TransmissionOver};
 use crate::task::{Problem, region::Region};
@@ -86,7 +86,7 @@ fn clipped(limits: Option<Limits>, default: [f64; 2], shift: f64, size: f64) -> 
 
 impl Limited {
     /// Returns the limits of a problem for a kind of linkage, seen from `centre` in units of `size`.
-    pub fn of(problem: &Problem, kind: LoopKind, centre: Complex, size: f64) -> Limited {
+    pub fn of(problem: &Problem, kind: LinkageKind, centre: Complex, size: f64) -> Limited {
         let (design, require) = (&problem.spec().design, &problem.spec().require);
         let infinite = (f64::NEG_INFINITY, f64::INFINITY);
         let mut bounds = [infinite; UNKNOWNS];
@@ -109,15 +109,15 @@ impl Limited {
         (bounds[0], bounds[1]) = (pivot(*crank_pivot, 0), pivot(*crank_pivot, 1));
         bounds[2] = length(a);
         match kind {
-            LoopKind::FourBar => {}
-            LoopKind::SliderCrank => {
+            LinkageKind::FourBar => {}
+            LinkageKind::SliderCrank => {
                 bounds[3] = length(b);
                 bounds[4] = (-DEFAULT_REACH, DEFAULT_REACH);
                 bounds[5] = design
                     .line_deg
                     .map_or(infinite, |Limits(low, high)| (low.to_radians(), high.to_radians()));
             }
-            LoopKind::InvertedSliderCrank => {
+            LinkageKind::InvertedSliderCrank => {
                 (bounds[3], bounds[4]) = (pivot(*follower_pivot, 0), pivot(*follower_pivot, 1));
                 bounds[5] = (-DEFAULT_REACH, DEFAULT_REACH);
             }
@@ -144,9 +144,9 @@ impl Limited {
             over_used: require.transmission_over == Some(TransmissionOver::Used),
             stroke: require
                 .stroke
-                .filter(|_| kind == LoopKind::SliderCrank)
+                .filter(|_| kind == LinkageKind::SliderCrank)
                 .map(|limits| [limits.0 / size, limits.1 / size]),
-            time_ratio: require.time_ratio.filter(|_| kind == LoopKind::SliderCrank).map(|l| [l.0, l.1]),
+            time_ratio: require.time_ratio.filter(|_| kind == LinkageKind::SliderCrank).map(|l| [l.0, l.1]),
             link_ratio: Some(require.link_ratio_max).filter(|ratio| ratio.is_finite()),
             longest,
             one_branch: !problem.branch_any(),

@@ -1,7 +1,8 @@
 //! The closure of a linkage with a slider, with its derivatives by the position and by the unknowns.
 
 use crate::mechanism::{
-    AssemblyMode, Complex, InvertedSliderCrank, LinkageError, LoopKind, OneLoop, SliderCrank, cross, dot,
+    AssemblyMode, Complex, CrankLinkage, InvertedSliderCrank, LinkageError, LinkageKind, SliderCrank, cross,
+    dot,
 };
 
 /// The number of unknowns of a linkage with a slider.
@@ -66,16 +67,18 @@ pub struct Miss {
 
 impl SliderShape {
     /// Returns the linkage of a kind in its unknowns; `None` of a four-bar, and without positive lengths.
-    pub fn of(kind: LoopKind, x: &Unknowns) -> Option<SliderShape> {
+    pub fn of(kind: LinkageKind, x: &Unknowns) -> Option<SliderShape> {
         let [ax, ay, crank, one, two, three, zx, zy, ..] = *x;
         let closure = match kind {
-            LoopKind::FourBar => return None,
-            LoopKind::SliderCrank => {
+            LinkageKind::FourBar => return None,
+            LinkageKind::SliderCrank => {
                 Closure::Line { coupler: one, height: two, direction: Complex::from_polar(1.0, three) }
             }
-            LoopKind::InvertedSliderCrank => Closure::Block { pivot: Complex::new(one, two), offset: three },
+            LinkageKind::InvertedSliderCrank => {
+                Closure::Block { pivot: Complex::new(one, two), offset: three }
+            }
         };
-        let is_length = crank > 0.0 && !(kind == LoopKind::SliderCrank && one <= 0.0);
+        let is_length = crank > 0.0 && !(kind == LinkageKind::SliderCrank && one <= 0.0);
         is_length.then_some(SliderShape {
             crank_pivot: Complex::new(ax, ay),
             crank,
@@ -85,15 +88,17 @@ impl SliderShape {
     }
 
     /// Returns a linkage in its unknowns; `None` of a four-bar.
-    pub fn from_linkage(linkage: &OneLoop) -> Option<SliderShape> {
+    pub fn from_linkage(linkage: &CrankLinkage) -> Option<SliderShape> {
         let closure = match linkage {
-            OneLoop::FourBar(_) => return None,
-            OneLoop::SliderCrank(l) => Closure::Line {
+            CrankLinkage::FourBar(_) => return None,
+            CrankLinkage::SliderCrank(l) => Closure::Line {
                 coupler: l.coupler(),
                 height: cross(l.line_direction(), l.line_point()),
                 direction: l.line_direction(),
             },
-            OneLoop::InvertedSliderCrank(l) => Closure::Block { pivot: l.block_pivot(), offset: l.offset() },
+            CrankLinkage::InvertedSliderCrank(l) => {
+                Closure::Block { pivot: l.block_pivot(), offset: l.offset() }
+            }
         };
         Some(SliderShape {
             crank_pivot: linkage.crank_pivot(),
@@ -143,7 +148,7 @@ impl SliderShape {
     ///
     /// # Errors
     /// If a number is beyond the range of lengths.
-    pub fn linkage(&self, assembly: AssemblyMode) -> Result<OneLoop, LinkageError> {
+    pub fn linkage(&self, assembly: AssemblyMode) -> Result<CrankLinkage, LinkageError> {
         let sign = assembly.sign();
         match self.closure {
             Closure::Line { coupler, height, direction } => {
@@ -154,13 +159,13 @@ impl SliderShape {
                 let lengths = [self.crank, coupler];
                 let line = (foot, direction.arg());
                 SliderCrank::from_parts(self.crank_pivot, lengths, line, self.offset, AssemblyMode::Plus)
-                    .map(OneLoop::SliderCrank)
+                    .map(CrankLinkage::SliderCrank)
             }
             Closure::Block { pivot, offset } => {
                 let pivots = [self.crank_pivot, pivot];
                 let (h, z) = (sign * offset, sign * self.offset);
                 InvertedSliderCrank::from_parts(pivots, self.crank, h, z, AssemblyMode::Plus)
-                    .map(OneLoop::InvertedSliderCrank)
+                    .map(CrankLinkage::InvertedSliderCrank)
             }
         }
     }

@@ -5,7 +5,7 @@ use super::limits::Limited;
 use super::output::Outputs;
 use super::shape::{SliderShape, Unknowns};
 use super::swept::BoxLimits;
-use crate::mechanism::{AssemblyMode, Complex, LoopKind, bounding_box};
+use crate::mechanism::{AssemblyMode, Complex, LinkageKind, bounding_box};
 use crate::numbers::arithmetic::streams::{stream, uniform};
 use crate::numbers::optimise::levenberg_marquardt::derivative_error;
 use crate::task::region::Region;
@@ -14,11 +14,11 @@ use crate::task::{AngleOffset, Output, Problem};
 use std::f64::consts::TAU;
 
 /// Draws a linkage that closes for cranks within half a radian of the x axis, as unknowns.
-fn drawn(kind: LoopKind, case: u64) -> (Unknowns, SliderShape) {
+fn drawn(kind: LinkageKind, case: u64) -> (Unknowns, SliderShape) {
     let mut draws = stream(9, case);
     let mut in_range = |low: f64, high: f64| uniform(&mut draws, low, high);
     let x = match kind {
-        LoopKind::SliderCrank => [
+        LinkageKind::SliderCrank => [
             in_range(-1.0, 1.0),
             in_range(-1.0, 1.0),
             in_range(0.2, 0.6),
@@ -46,7 +46,7 @@ fn drawn(kind: LoopKind, case: u64) -> (Unknowns, SliderShape) {
     (x, SliderShape::of(kind, &x).expect("lengths are positive"))
 }
 
-fn limits(kind: LoopKind, turns: bool, ends: bool) -> Limited {
+fn limits(kind: LinkageKind, turns: bool, ends: bool) -> Limited {
     let bounds = |low, high| ends.then_some(Limits(low, high));
     let require = RequireSpec {
         stroke: bounds(0.5, 1.0),
@@ -70,7 +70,7 @@ fn limits(kind: LoopKind, turns: bool, ends: bool) -> Limited {
 
 #[test]
 fn derivatives_agree_with_differences() {
-    for kind in [LoopKind::SliderCrank, LoopKind::InvertedSliderCrank] {
+    for kind in [LinkageKind::SliderCrank, LinkageKind::InvertedSliderCrank] {
         for case in 0..60 {
             let (x, shape) = drawn(kind, case);
             let sign = if case % 2 == 0 { 1.0 } else { -1.0 };
@@ -118,7 +118,7 @@ fn derivatives_agree_with_differences() {
                     sense: 1.0,
                     ends_meet: false,
                 };
-                let is_angle = kind == LoopKind::InvertedSliderCrank && case % 4 < 2;
+                let is_angle = kind == LinkageKind::InvertedSliderCrank && case % 4 < 2;
                 let outputs = Outputs {
                     kind: if is_angle { Output::Angle } else { Output::Place },
                     wanted: (0..6).map(|j| 0.3 * f64::from(j)).collect(),
@@ -161,7 +161,7 @@ fn derivatives_agree_with_differences() {
 
 #[test]
 fn a_shape_is_the_linkage_that_it_becomes() {
-    for kind in [LoopKind::SliderCrank, LoopKind::InvertedSliderCrank] {
+    for kind in [LinkageKind::SliderCrank, LinkageKind::InvertedSliderCrank] {
         for case in 0..60 {
             let (_, shape) = drawn(kind, case);
             let carried = shape.carried(Complex::new(1.5, -2.0), Complex::new(3.0, 0.7));
@@ -183,7 +183,7 @@ fn a_shape_is_the_linkage_that_it_becomes() {
 
 #[test]
 fn the_extent_is_the_diagonal_of_the_box_of_all_joints() {
-    for kind in [LoopKind::SliderCrank, LoopKind::InvertedSliderCrank] {
+    for kind in [LinkageKind::SliderCrank, LinkageKind::InvertedSliderCrank] {
         for case in 0..60 {
             let (_, shape) = drawn(kind, case);
             // Over a turn, and over a stretch that begins and ends at positions.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema,
 )]
 #[serde(rename_all = "kebab-case")]
-pub enum LoopKind {
+pub enum LinkageKind {
     /// Four pins.
     FourBar,
     /// Three pins and a block on a fixed line.
@@ -16,21 +16,22 @@ pub enum LoopKind {
     InvertedSliderCrank,
 }
 
-impl LoopKind {
+impl LinkageKind {
     /// Every kind.
-    pub const ALL: [LoopKind; 3] = [LoopKind::FourBar, LoopKind::SliderCrank, LoopKind::InvertedSliderCrank];
+    pub const ALL: [LinkageKind; 3] =
+        [LinkageKind::FourBar, LinkageKind::SliderCrank, LinkageKind::InvertedSliderCrank];
 
     /// Returns the name in files: `slider-crank`.
     pub fn name(self) -> &'static str {
         match self {
-            LoopKind::FourBar => "four-bar",
-            LoopKind::SliderCrank => "slider-crank",
-            LoopKind::InvertedSliderCrank => "inverted-slider-crank",
+            LinkageKind::FourBar => "four-bar",
+            LinkageKind::SliderCrank => "slider-crank",
+            LinkageKind::InvertedSliderCrank => "inverted-slider-crank",
         }
     }
 }
 
-impl std::fmt::Display for LoopKind {
+impl std::fmt::Display for LinkageKind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name())
     }

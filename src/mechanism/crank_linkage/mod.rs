@@ -8,7 +8,7 @@ mod kind;
 mod mobility;
 
 pub use keys::{LinkageKeys, NoLinkage};
-pub use kind::LoopKind;
+pub use kind::LinkageKind;
 pub use mobility::LoopMobility;
 
 use super::any::Mechanism;
@@ -23,7 +23,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A linkage of one loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum OneLoop {
+pub enum CrankLinkage {
     /// A four-bar.
     FourBar(FourBar),
     /// A slider-crank.
@@ -60,46 +60,46 @@ impl From<&LoopJoints> for LoopJoints {
     }
 }
 
-impl OneLoop {
+impl CrankLinkage {
     /// Returns the kind.
-    pub fn kind(&self) -> LoopKind {
+    pub fn kind(&self) -> LinkageKind {
         match self {
-            OneLoop::FourBar(_) => LoopKind::FourBar,
-            OneLoop::SliderCrank(_) => LoopKind::SliderCrank,
-            OneLoop::InvertedSliderCrank(_) => LoopKind::InvertedSliderCrank,
+            CrankLinkage::FourBar(_) => LinkageKind::FourBar,
+            CrankLinkage::SliderCrank(_) => LinkageKind::SliderCrank,
+            CrankLinkage::InvertedSliderCrank(_) => LinkageKind::InvertedSliderCrank,
         }
     }
 
     /// Returns the four-bar, if it is one.
     pub fn four_bar(&self) -> Option<&FourBar> {
         match self {
-            OneLoop::FourBar(linkage) => Some(linkage),
-            OneLoop::SliderCrank(_) | OneLoop::InvertedSliderCrank(_) => None,
+            CrankLinkage::FourBar(linkage) => Some(linkage),
+            CrankLinkage::SliderCrank(_) | CrankLinkage::InvertedSliderCrank(_) => None,
         }
     }
 
     /// Returns the slider-crank, if it is one.
     pub fn slider_crank(&self) -> Option<&SliderCrank> {
         match self {
-            OneLoop::SliderCrank(linkage) => Some(linkage),
-            OneLoop::FourBar(_) | OneLoop::InvertedSliderCrank(_) => None,
+            CrankLinkage::SliderCrank(linkage) => Some(linkage),
+            CrankLinkage::FourBar(_) | CrankLinkage::InvertedSliderCrank(_) => None,
         }
     }
 
     /// Returns the inverted slider-crank, if it is one.
     pub fn inverted_slider_crank(&self) -> Option<&InvertedSliderCrank> {
         match self {
-            OneLoop::InvertedSliderCrank(linkage) => Some(linkage),
-            OneLoop::FourBar(_) | OneLoop::SliderCrank(_) => None,
+            CrankLinkage::InvertedSliderCrank(linkage) => Some(linkage),
+            CrankLinkage::FourBar(_) | CrankLinkage::SliderCrank(_) => None,
         }
     }
 
     /// Returns the linkage as a mechanism of any kind.
     pub fn mechanism(&self) -> &dyn Mechanism {
         match self {
-            OneLoop::FourBar(linkage) => linkage,
-            OneLoop::SliderCrank(linkage) => linkage,
-            OneLoop::InvertedSliderCrank(linkage) => linkage,
+            CrankLinkage::FourBar(linkage) => linkage,
+            CrankLinkage::SliderCrank(linkage) => linkage,
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage,
         }
     }
 
@@ -117,18 +117,18 @@ impl OneLoop {
     /// Returns A, the fixed pivot of the crank.
     pub fn crank_pivot(&self) -> Complex {
         match self {
-            OneLoop::FourBar(linkage) => linkage.crank_pivot(),
-            OneLoop::SliderCrank(linkage) => linkage.crank_pivot(),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.crank_pivot(),
+            CrankLinkage::FourBar(linkage) => linkage.crank_pivot(),
+            CrankLinkage::SliderCrank(linkage) => linkage.crank_pivot(),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.crank_pivot(),
         }
     }
 
     /// Returns the second fixed pivot B, of the follower or of the block; a slider-crank has none.
     pub fn second_pivot(&self) -> Option<Complex> {
         match self {
-            OneLoop::FourBar(linkage) => Some(linkage.follower_pivot()),
-            OneLoop::SliderCrank(_) => None,
-            OneLoop::InvertedSliderCrank(linkage) => Some(linkage.block_pivot()),
+            CrankLinkage::FourBar(linkage) => Some(linkage.follower_pivot()),
+            CrankLinkage::SliderCrank(_) => None,
+            CrankLinkage::InvertedSliderCrank(linkage) => Some(linkage.block_pivot()),
         }
     }
 
@@ -140,18 +140,18 @@ impl OneLoop {
     /// Returns a = |AC|, the length of the crank.
     pub fn crank(&self) -> f64 {
         match self {
-            OneLoop::FourBar(linkage) => linkage.crank(),
-            OneLoop::SliderCrank(linkage) => linkage.crank(),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.crank(),
+            CrankLinkage::FourBar(linkage) => linkage.crank(),
+            CrankLinkage::SliderCrank(linkage) => linkage.crank(),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.crank(),
         }
     }
 
     /// Returns P along and across the coupler from C, as lengths.
     pub fn coupler_offset(&self) -> Complex {
         match self {
-            OneLoop::FourBar(linkage) => linkage.coupler_offset(),
-            OneLoop::SliderCrank(linkage) => linkage.coupler_offset(),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.coupler_offset(),
+            CrankLinkage::FourBar(linkage) => linkage.coupler_offset(),
+            CrankLinkage::SliderCrank(linkage) => linkage.coupler_offset(),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.coupler_offset(),
         }
     }
 
@@ -159,9 +159,9 @@ impl OneLoop {
     /// line; 0 for coincident pivots.
     pub fn ground_angle(&self) -> f64 {
         match self {
-            OneLoop::FourBar(linkage) => linkage.ground_angle(),
-            OneLoop::SliderCrank(linkage) => linkage.line_angle(),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.ground_angle(),
+            CrankLinkage::FourBar(linkage) => linkage.ground_angle(),
+            CrankLinkage::SliderCrank(linkage) => linkage.line_angle(),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.ground_angle(),
         }
     }
 
@@ -169,65 +169,65 @@ impl OneLoop {
     /// ground and a of an inverted one. Infinite for coincident pivots.
     pub fn link_ratio(&self) -> f64 {
         match self {
-            OneLoop::FourBar(linkage) => linkage.link_ratio(),
-            OneLoop::SliderCrank(linkage) => linkage.link_ratio(),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.link_ratio(),
+            CrankLinkage::FourBar(linkage) => linkage.link_ratio(),
+            CrankLinkage::SliderCrank(linkage) => linkage.link_ratio(),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.link_ratio(),
         }
     }
 
-    /// Returns the longest link, of those whose ratio [`OneLoop::link_ratio`] is.
+    /// Returns the longest link, of those whose ratio [`CrankLinkage::link_ratio`] is.
     pub fn longest_link(&self) -> f64 {
         match self {
-            OneLoop::FourBar(linkage) => linkage.longest_link(),
-            OneLoop::SliderCrank(linkage) => linkage.crank().max(linkage.coupler()),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.crank().max(linkage.ground()),
+            CrankLinkage::FourBar(linkage) => linkage.longest_link(),
+            CrankLinkage::SliderCrank(linkage) => linkage.crank().max(linkage.coupler()),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.crank().max(linkage.ground()),
         }
     }
 
     /// Returns b = |CD|, the length of the coupler; that of an inverted slider-crank slides through its block.
     pub fn coupler(&self) -> Option<f64> {
         match self {
-            OneLoop::FourBar(linkage) => Some(linkage.coupler()),
-            OneLoop::SliderCrank(linkage) => Some(linkage.coupler()),
-            OneLoop::InvertedSliderCrank(_) => None,
+            CrankLinkage::FourBar(linkage) => Some(linkage.coupler()),
+            CrankLinkage::SliderCrank(linkage) => Some(linkage.coupler()),
+            CrankLinkage::InvertedSliderCrank(_) => None,
         }
     }
 
     /// Returns |AB|, the distance of the fixed pivots; a slider-crank has one pivot.
     pub fn ground(&self) -> Option<f64> {
         match self {
-            OneLoop::FourBar(linkage) => Some(linkage.ground()),
-            OneLoop::SliderCrank(_) => None,
-            OneLoop::InvertedSliderCrank(linkage) => Some(linkage.ground()),
+            CrankLinkage::FourBar(linkage) => Some(linkage.ground()),
+            CrankLinkage::SliderCrank(_) => None,
+            CrankLinkage::InvertedSliderCrank(linkage) => Some(linkage.ground()),
         }
     }
 
     /// Returns e = |DP|; `None` of an inverted slider-crank, whose D moves along the coupler.
     pub fn second_side(&self) -> Option<f64> {
         match self {
-            OneLoop::FourBar(linkage) => Some(linkage.follower_side()),
-            OneLoop::SliderCrank(linkage) => Some((linkage.coupler_offset() - linkage.coupler()).norm()),
-            OneLoop::InvertedSliderCrank(_) => None,
+            CrankLinkage::FourBar(linkage) => Some(linkage.follower_side()),
+            CrankLinkage::SliderCrank(linkage) => Some((linkage.coupler_offset() - linkage.coupler()).norm()),
+            CrankLinkage::InvertedSliderCrank(_) => None,
         }
     }
 
     /// Returns |CP|, the distance from the crank pin to the coupler point.
     pub fn crank_side(&self) -> f64 {
         match self {
-            OneLoop::FourBar(linkage) => linkage.crank_side(),
-            OneLoop::SliderCrank(linkage) => linkage.coupler_offset().norm(),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.coupler_offset().norm(),
+            CrankLinkage::FourBar(linkage) => linkage.crank_side(),
+            CrankLinkage::SliderCrank(linkage) => linkage.coupler_offset().norm(),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.coupler_offset().norm(),
         }
     }
 
     /// Returns the largest distance between two joints of one body, P and pivots included; a rail does not count.
     pub fn longest(&self) -> f64 {
         match self {
-            OneLoop::FourBar(linkage) => {
+            CrankLinkage::FourBar(linkage) => {
                 linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
             }
-            OneLoop::SliderCrank(linkage) => linkage.longest(),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.longest(),
+            CrankLinkage::SliderCrank(linkage) => linkage.longest(),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.longest(),
         }
     }
 
@@ -239,12 +239,14 @@ impl OneLoop {
             Some(LoopJoints { joints, coupler })
         };
         match self {
-            OneLoop::FourBar(linkage) => {
+            CrankLinkage::FourBar(linkage) => {
                 let joints = linkage.position_with(crank_angle, assembly).joints()?;
                 Some(LoopJoints { joints, coupler: joints.follower_pin - joints.crank_pin })
             }
-            OneLoop::SliderCrank(linkage) => of_slider(linkage.position_with(crank_angle, assembly)),
-            OneLoop::InvertedSliderCrank(linkage) => of_slider(linkage.position_with(crank_angle, assembly)),
+            CrankLinkage::SliderCrank(linkage) => of_slider(linkage.position_with(crank_angle, assembly)),
+            CrankLinkage::InvertedSliderCrank(linkage) => {
+                of_slider(linkage.position_with(crank_angle, assembly))
+            }
         }
     }
 
@@ -252,9 +254,9 @@ impl OneLoop {
     /// block of an inverted slider-crank, which turns with the coupler. `None` of a slider-crank, whose slider does not turn.
     pub fn output_angle(&self, at: &LoopJoints) -> Option<f64> {
         match self {
-            OneLoop::FourBar(linkage) => Some((at.joints.follower_pin - linkage.follower_pivot()).arg()),
-            OneLoop::SliderCrank(_) => None,
-            OneLoop::InvertedSliderCrank(_) => Some(at.coupler.arg()),
+            CrankLinkage::FourBar(linkage) => Some((at.joints.follower_pin - linkage.follower_pivot()).arg()),
+            CrankLinkage::SliderCrank(_) => None,
+            CrankLinkage::InvertedSliderCrank(_) => Some(at.coupler.arg()),
         }
     }
 
@@ -264,11 +266,11 @@ impl OneLoop {
     pub fn slider_place(&self, at: &LoopJoints) -> Option<f64> {
         let Joints { crank_pin, follower_pin, .. } = at.joints;
         match self {
-            OneLoop::FourBar(_) => None,
-            OneLoop::SliderCrank(linkage) => {
+            CrankLinkage::FourBar(_) => None,
+            CrankLinkage::SliderCrank(linkage) => {
                 Some(dot(follower_pin - linkage.crank_pivot(), linkage.line_direction()))
             }
-            OneLoop::InvertedSliderCrank(_) => {
+            CrankLinkage::InvertedSliderCrank(_) => {
                 Some(dot(follower_pin - crank_pin, at.coupler) / at.coupler.norm())
             }
         }
@@ -279,9 +281,9 @@ impl OneLoop {
     pub fn transmission_at(&self, crank_angle: f64) -> f64 {
         let crank = || Complex::from_polar(1.0, crank_angle);
         match self {
-            OneLoop::FourBar(linkage) => linkage.angle_at_follower_pin(crank_angle),
-            OneLoop::SliderCrank(linkage) => linkage.transmission_toward(crank()),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.transmission_toward(crank()),
+            CrankLinkage::FourBar(linkage) => linkage.angle_at_follower_pin(crank_angle),
+            CrankLinkage::SliderCrank(linkage) => linkage.transmission_toward(crank()),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.transmission_toward(crank()),
         }
     }
 
@@ -294,7 +296,7 @@ impl OneLoop {
             change_point: mobility.change_point,
         };
         match self {
-            OneLoop::FourBar(linkage) => {
+            CrankLinkage::FourBar(linkage) => {
                 let mobility = linkage.mobility();
                 LoopMobility {
                     linkage_type: mobility.linkage_type,
@@ -303,30 +305,30 @@ impl OneLoop {
                     change_point: mobility.linkage_type == Some(LinkageType::ChangePoint),
                 }
             }
-            OneLoop::SliderCrank(linkage) => of_slider(linkage.mobility()),
-            OneLoop::InvertedSliderCrank(linkage) => of_slider(linkage.mobility()),
+            CrankLinkage::SliderCrank(linkage) => of_slider(linkage.mobility()),
+            CrankLinkage::InvertedSliderCrank(linkage) => of_slider(linkage.mobility()),
         }
     }
 
     /// Computes the extremes of the transmission angle over the range of the crank; `None` without a position.
     pub fn transmission_over_cycle(&self) -> Option<TransmissionExtremes> {
         match self {
-            OneLoop::FourBar(linkage) => Some(linkage.transmission_over_cycle()),
-            OneLoop::SliderCrank(linkage) => linkage.transmission_over_range(),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.transmission_over_range(),
+            CrankLinkage::FourBar(linkage) => Some(linkage.transmission_over_cycle()),
+            CrankLinkage::SliderCrank(linkage) => linkage.transmission_over_range(),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.transmission_over_range(),
         }
     }
 
     /// Returns its numbers, by which equals are ordered: those of its keys, as many as there are.
     pub fn numbers(&self) -> [f64; 9] {
         match self {
-            OneLoop::FourBar(linkage) => linkage.natural_coordinates().numbers(),
-            OneLoop::SliderCrank(linkage) => {
+            CrankLinkage::FourBar(linkage) => linkage.natural_coordinates().numbers(),
+            CrankLinkage::SliderCrank(linkage) => {
                 let p = linkage.parameters();
                 let ([ax, ay], [qx, qy]) = (p.crank_pivot, p.line_point);
                 [ax, ay, qx, qy, p.line_deg, p.crank, p.coupler, p.coupler_x, p.coupler_y]
             }
-            OneLoop::InvertedSliderCrank(linkage) => {
+            CrankLinkage::InvertedSliderCrank(linkage) => {
                 let p = linkage.parameters();
                 let ([ax, ay], [bx, by]) = (p.crank_pivot, p.block_pivot);
                 [ax, ay, bx, by, p.crank, p.offset, p.coupler_x, p.coupler_y, 0.0]
@@ -342,9 +344,9 @@ impl OneLoop {
         let place = |[x, y]: [f64; 2]| xy(shift + turn * Complex::new(x, if mirrors { -y } else { y }));
         let sign = if mirrors { -1.0 } else { 1.0 };
         Ok(match self {
-            OneLoop::FourBar(linkage) => {
+            CrankLinkage::FourBar(linkage) => {
                 let own = linkage.natural_coordinates();
-                OneLoop::FourBar(FourBar::new(NaturalCoordinates {
+                CrankLinkage::FourBar(FourBar::new(NaturalCoordinates {
                     crank_pivot: place(own.crank_pivot),
                     follower_pivot: place(own.follower_pivot),
                     assembly: self.carried_assembly(mirrors, own.assembly),
@@ -352,9 +354,9 @@ impl OneLoop {
                     ..own
                 })?)
             }
-            OneLoop::SliderCrank(linkage) => {
+            CrankLinkage::SliderCrank(linkage) => {
                 let own = linkage.parameters();
-                OneLoop::SliderCrank(SliderCrank::new(SliderCrankParameters {
+                CrankLinkage::SliderCrank(SliderCrank::new(SliderCrankParameters {
                     crank_pivot: place(own.crank_pivot),
                     line_point: place(own.line_point),
                     line_deg: turn.arg().to_degrees() + sign * own.line_deg,
@@ -362,9 +364,9 @@ impl OneLoop {
                     ..own
                 })?)
             }
-            OneLoop::InvertedSliderCrank(linkage) => {
+            CrankLinkage::InvertedSliderCrank(linkage) => {
                 let own = linkage.parameters();
-                OneLoop::InvertedSliderCrank(InvertedSliderCrank::new(InvertedSliderCrankParameters {
+                CrankLinkage::InvertedSliderCrank(InvertedSliderCrank::new(InvertedSliderCrankParameters {
                     crank_pivot: place(own.crank_pivot),
                     block_pivot: place(own.block_pivot),
                     offset: sign * own.offset,
@@ -387,9 +389,11 @@ impl OneLoop {
     /// If a coordinate leaves the allowed range.
     pub fn shifted(&self, by: Complex) -> Result<Self, LinkageError> {
         Ok(match self {
-            OneLoop::FourBar(linkage) => OneLoop::FourBar(linkage.shifted(by)?),
-            OneLoop::SliderCrank(linkage) => OneLoop::SliderCrank(linkage.shifted(by)?),
-            OneLoop::InvertedSliderCrank(linkage) => OneLoop::InvertedSliderCrank(linkage.shifted(by)?),
+            CrankLinkage::FourBar(linkage) => CrankLinkage::FourBar(linkage.shifted(by)?),
+            CrankLinkage::SliderCrank(linkage) => CrankLinkage::SliderCrank(linkage.shifted(by)?),
+            CrankLinkage::InvertedSliderCrank(linkage) => {
+                CrankLinkage::InvertedSliderCrank(linkage.shifted(by)?)
+            }
         })
     }
 
@@ -399,52 +403,54 @@ impl OneLoop {
     /// If a length leaves the allowed range.
     pub fn scaled(&self, factor: f64) -> Result<Self, LinkageError> {
         Ok(match self {
-            OneLoop::FourBar(linkage) => OneLoop::FourBar(linkage.scaled(factor)?),
-            OneLoop::SliderCrank(linkage) => OneLoop::SliderCrank(linkage.scaled(factor)?),
-            OneLoop::InvertedSliderCrank(linkage) => OneLoop::InvertedSliderCrank(linkage.scaled(factor)?),
+            CrankLinkage::FourBar(linkage) => CrankLinkage::FourBar(linkage.scaled(factor)?),
+            CrankLinkage::SliderCrank(linkage) => CrankLinkage::SliderCrank(linkage.scaled(factor)?),
+            CrankLinkage::InvertedSliderCrank(linkage) => {
+                CrankLinkage::InvertedSliderCrank(linkage.scaled(factor)?)
+            }
         })
     }
 }
 
-impl SingleLoop for OneLoop {
+impl SingleLoop for CrankLinkage {
     fn with_assembly(self, assembly: AssemblyMode) -> Self {
         match self {
-            OneLoop::FourBar(linkage) => OneLoop::FourBar(linkage.with_assembly(assembly)),
-            OneLoop::SliderCrank(linkage) => {
-                OneLoop::SliderCrank(SliderLinkage::with_assembly(linkage, assembly))
+            CrankLinkage::FourBar(linkage) => CrankLinkage::FourBar(linkage.with_assembly(assembly)),
+            CrankLinkage::SliderCrank(linkage) => {
+                CrankLinkage::SliderCrank(SliderLinkage::with_assembly(linkage, assembly))
             }
-            OneLoop::InvertedSliderCrank(linkage) => {
-                OneLoop::InvertedSliderCrank(SliderLinkage::with_assembly(linkage, assembly))
+            CrankLinkage::InvertedSliderCrank(linkage) => {
+                CrankLinkage::InvertedSliderCrank(SliderLinkage::with_assembly(linkage, assembly))
             }
         }
     }
 
     fn assembly(&self) -> AssemblyMode {
         match self {
-            OneLoop::FourBar(linkage) => linkage.assembly(),
-            OneLoop::SliderCrank(linkage) => SliderLinkage::assembly(linkage),
-            OneLoop::InvertedSliderCrank(linkage) => SliderLinkage::assembly(linkage),
+            CrankLinkage::FourBar(linkage) => linkage.assembly(),
+            CrankLinkage::SliderCrank(linkage) => SliderLinkage::assembly(linkage),
+            CrankLinkage::InvertedSliderCrank(linkage) => SliderLinkage::assembly(linkage),
         }
     }
 
     fn coupler_point_with(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<Complex> {
         match self {
-            OneLoop::FourBar(linkage) => linkage.coupler_point_with(crank_angle, assembly),
-            OneLoop::SliderCrank(linkage) => linkage.coupler_point_with(crank_angle, assembly),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.coupler_point_with(crank_angle, assembly),
+            CrankLinkage::FourBar(linkage) => linkage.coupler_point_with(crank_angle, assembly),
+            CrankLinkage::SliderCrank(linkage) => linkage.coupler_point_with(crank_angle, assembly),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.coupler_point_with(crank_angle, assembly),
         }
     }
 
     fn arc_of(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<InputArc> {
         match self {
-            OneLoop::FourBar(linkage) => linkage.arc_of(crank_angle, assembly),
-            OneLoop::SliderCrank(linkage) => linkage.arc_of(crank_angle, assembly),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.arc_of(crank_angle, assembly),
+            CrankLinkage::FourBar(linkage) => linkage.arc_of(crank_angle, assembly),
+            CrankLinkage::SliderCrank(linkage) => linkage.arc_of(crank_angle, assembly),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.arc_of(crank_angle, assembly),
         }
     }
 }
 
-impl OnCircuit<OneLoop> {
+impl OnCircuit<CrankLinkage> {
     /// Computes the joints at a parameter; `None` if the loop is open.
     pub fn joints_at(&self, parameter: f64) -> Option<Joints> {
         let (crank_angle, assembly) = self.position_at(parameter);
@@ -457,7 +463,7 @@ impl OnCircuit<OneLoop> {
     pub fn transmission_between(&self, [low, high]: [f64; 2]) -> TransmissionExtremes {
         let inside = |t: &f64| low + (t - low).rem_euclid(TAU);
         match &self.linkage {
-            OneLoop::FourBar(linkage) => {
+            CrankLinkage::FourBar(linkage) => {
                 let ground = linkage.ground_angle();
                 let extreme: &[f64] = if self.arc.is_some() {
                     &[0.0, FRAC_PI_2, PI, -FRAC_PI_2]
@@ -468,8 +474,8 @@ impl OnCircuit<OneLoop> {
                 let all = [low, high].into_iter().chain(inside);
                 linkage.transmission_at(all.map(|t| linkage.diagonal(self.position_at(t).0)))
             }
-            OneLoop::SliderCrank(linkage) => self.of_slider(linkage, [low, high]),
-            OneLoop::InvertedSliderCrank(linkage) => self.of_slider(linkage, [low, high]),
+            CrankLinkage::SliderCrank(linkage) => self.of_slider(linkage, [low, high]),
+            CrankLinkage::InvertedSliderCrank(linkage) => self.of_slider(linkage, [low, high]),
         }
     }
 
@@ -491,52 +497,52 @@ impl OnCircuit<OneLoop> {
     }
 }
 
-impl From<FourBar> for OneLoop {
+impl From<FourBar> for CrankLinkage {
     fn from(linkage: FourBar) -> Self {
-        OneLoop::FourBar(linkage)
+        CrankLinkage::FourBar(linkage)
     }
 }
 
-impl From<&FourBar> for OneLoop {
+impl From<&FourBar> for CrankLinkage {
     fn from(linkage: &FourBar) -> Self {
-        OneLoop::FourBar(*linkage)
+        CrankLinkage::FourBar(*linkage)
     }
 }
 
-impl From<SliderCrank> for OneLoop {
+impl From<SliderCrank> for CrankLinkage {
     fn from(linkage: SliderCrank) -> Self {
-        OneLoop::SliderCrank(linkage)
+        CrankLinkage::SliderCrank(linkage)
     }
 }
 
-impl From<InvertedSliderCrank> for OneLoop {
+impl From<InvertedSliderCrank> for CrankLinkage {
     fn from(linkage: InvertedSliderCrank) -> Self {
-        OneLoop::InvertedSliderCrank(linkage)
+        CrankLinkage::InvertedSliderCrank(linkage)
     }
 }
 
-impl From<&OneLoop> for OneLoop {
-    fn from(linkage: &OneLoop) -> Self {
+impl From<&CrankLinkage> for CrankLinkage {
+    fn from(linkage: &CrankLinkage) -> Self {
         *linkage
     }
 }
 
-impl From<OneLoop> for super::Linkage {
-    fn from(linkage: OneLoop) -> Self {
+impl From<CrankLinkage> for super::Linkage {
+    fn from(linkage: CrankLinkage) -> Self {
         match linkage {
-            OneLoop::FourBar(linkage) => super::Linkage::FourBar(linkage),
-            OneLoop::SliderCrank(linkage) => super::Linkage::SliderCrank(linkage),
-            OneLoop::InvertedSliderCrank(linkage) => super::Linkage::InvertedSliderCrank(linkage),
+            CrankLinkage::FourBar(linkage) => super::Linkage::FourBar(linkage),
+            CrankLinkage::SliderCrank(linkage) => super::Linkage::SliderCrank(linkage),
+            CrankLinkage::InvertedSliderCrank(linkage) => super::Linkage::InvertedSliderCrank(linkage),
         }
     }
 }
 
-impl std::fmt::Display for OneLoop {
+impl std::fmt::Display for CrankLinkage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            OneLoop::FourBar(linkage) => linkage.fmt(f),
-            OneLoop::SliderCrank(linkage) => linkage.fmt(f),
-            OneLoop::InvertedSliderCrank(linkage) => linkage.fmt(f),
+            CrankLinkage::FourBar(linkage) => linkage.fmt(f),
+            CrankLinkage::SliderCrank(linkage) => linkage.fmt(f),
+            CrankLinkage::InvertedSliderCrank(linkage) => linkage.fmt(f),
         }
     }
 }

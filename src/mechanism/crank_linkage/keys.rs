@@ -1,6 +1,6 @@
 //! How a linkage of one loop is written and read: a four-bar by its keys alone, other kinds with their name under `kind`.
 
-use super::{LoopKind, OneLoop};
+use super::{CrankLinkage, LinkageKind};
 use crate::mechanism::{
     AssemblyMode, CouplerSide, FourBar, InvertedSliderCrank, InvertedSliderCrankParameters, LinkageError,
     NaturalCoordinates, SliderCrank, SliderCrankParameters,
@@ -44,14 +44,14 @@ enum Written {
     },
 }
 
-impl Serialize for OneLoop {
+impl Serialize for CrankLinkage {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let written = match self {
-            OneLoop::FourBar(linkage) => Written::FourBar(linkage.natural_coordinates()),
-            OneLoop::SliderCrank(linkage) => {
+            CrankLinkage::FourBar(linkage) => Written::FourBar(linkage.natural_coordinates()),
+            CrankLinkage::SliderCrank(linkage) => {
                 Written::SliderCrank { kind: SliderCrankKind::SliderCrank, parameters: linkage.parameters() }
             }
-            OneLoop::InvertedSliderCrank(linkage) => Written::InvertedSliderCrank {
+            CrankLinkage::InvertedSliderCrank(linkage) => Written::InvertedSliderCrank {
                 kind: InvertedSliderCrankKind::InvertedSliderCrank,
                 parameters: linkage.parameters(),
             },
@@ -63,11 +63,11 @@ impl Serialize for OneLoop {
 /// A linkage by its keys, which may be no linkage: every key of every kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "OneLoop")]
+#[schemars(rename = "CrankLinkage")]
 pub struct LinkageKeys {
     /// The kind; absent of a four-bar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub kind: Option<LoopKind>,
+    pub kind: Option<LinkageKind>,
     /// The fixed pivot of the crank.
     #[serde(rename = "A")]
     pub crank_pivot: [f64; 2],
@@ -118,7 +118,7 @@ pub struct LinkageKeys {
 pub enum NoLinkage {
     /// The kind has no such key.
     #[error("a {0} has no key `{1}`")]
-    Stray(LoopKind, &'static str),
+    Stray(LinkageKind, &'static str),
     /// A key of the kind is absent.
     #[error("missing field `{0}`")]
     Missing(&'static str),
@@ -129,9 +129,12 @@ pub enum NoLinkage {
 
 impl LinkageKeys {
     /// Returns the keys that are there although the kind has none of them.
-    fn stray(&self, kind: LoopKind) -> Option<&'static str> {
-        let (four_bar, slider, inverted) =
-            (kind == LoopKind::FourBar, kind == LoopKind::SliderCrank, kind == LoopKind::InvertedSliderCrank);
+    fn stray(&self, kind: LinkageKind) -> Option<&'static str> {
+        let (four_bar, slider, inverted) = (
+            kind == LinkageKind::FourBar,
+            kind == LinkageKind::SliderCrank,
+            kind == LinkageKind::InvertedSliderCrank,
+        );
         [
             ("B", self.second_pivot.is_some() && slider),
             ("b", self.b.is_some() && inverted),
@@ -150,20 +153,20 @@ impl LinkageKeys {
     }
 }
 
-impl TryFrom<LinkageKeys> for OneLoop {
+impl TryFrom<LinkageKeys> for CrankLinkage {
     type Error = NoLinkage;
 
     fn try_from(keys: LinkageKeys) -> Result<Self, NoLinkage> {
         fn given<T>(value: Option<T>, key: &'static str) -> Result<T, NoLinkage> {
             value.ok_or(NoLinkage::Missing(key))
         }
-        let kind = keys.kind.unwrap_or(LoopKind::FourBar);
+        let kind = keys.kind.unwrap_or(LinkageKind::FourBar);
         if let Some(key) = keys.stray(kind) {
             return Err(NoLinkage::Stray(kind, key));
         }
         let (crank_pivot, crank, assembly) = (keys.crank_pivot, keys.a, keys.t1);
         Ok(match kind {
-            LoopKind::FourBar => FourBar::new(NaturalCoordinates {
+            LinkageKind::FourBar => FourBar::new(NaturalCoordinates {
                 crank_pivot,
                 follower_pivot: given(keys.second_pivot, "B")?,
                 crank,
@@ -175,7 +178,7 @@ impl TryFrom<LinkageKeys> for OneLoop {
                 side: given(keys.t2, "t2")?,
             })?
             .into(),
-            LoopKind::SliderCrank => SliderCrank::new(SliderCrankParameters {
+            LinkageKind::SliderCrank => SliderCrank::new(SliderCrankParameters {
                 crank_pivot,
                 crank,
                 coupler: given(keys.b, "b")?,
@@ -186,7 +189,7 @@ impl TryFrom<LinkageKeys> for OneLoop {
                 assembly,
             })?
             .into(),
-            LoopKind::InvertedSliderCrank => InvertedSliderCrank::new(InvertedSliderCrankParameters {
+            LinkageKind::InvertedSliderCrank => InvertedSliderCrank::new(InvertedSliderCrankParameters {
                 crank_pivot,
                 block_pivot: given(keys.second_pivot, "B")?,
                 crank,
@@ -200,15 +203,15 @@ impl TryFrom<LinkageKeys> for OneLoop {
     }
 }
 
-impl<'de> Deserialize<'de> for OneLoop {
+impl<'de> Deserialize<'de> for CrankLinkage {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         LinkageKeys::deserialize(deserializer)?.try_into().map_err(D::Error::custom)
     }
 }
 
-impl schemars::JsonSchema for OneLoop {
+impl schemars::JsonSchema for CrankLinkage {
     fn schema_name() -> Cow<'static, str> {
-        "OneLoop".into()
+        "CrankLinkage".into()
     }
 
     fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
