@@ -9,7 +9,8 @@ use crate::judge::referee::judge;
 use crate::judge::requirement::{Judged, at_least, at_most};
 use crate::mechanism::{AssemblyMode, Complex, CrankLinkage, FourBar, InputRange, SliderCrank, point};
 use crate::record::{
-    AngleErrorRecord, Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord,
+    AngleErrorRecord, Assemblies, Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement,
+    TransmissionRecord,
 };
 use crate::task::ranges::Reference;
 use crate::task::requirement::RequirementKind;
@@ -37,7 +38,13 @@ pub fn assess(
 /// Judges a candidate anew, by this problem; the body of a motion keeps its place on the coupler.
 pub fn assess_again(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
     let Candidate { linkage, crank_deg, t1_at, .. } = candidate;
-    assess_on_curve(problem, linkage, (crank_deg, t1_at), candidate.own_reference(&problem.spec().task), None)
+    assess_on_curve(
+        problem,
+        linkage,
+        (crank_deg, t1_at.as_slice()),
+        candidate.own_reference(&problem.spec().task),
+        None,
+    )
 }
 
 /// Computes the distances of a candidate to its whole curve anew. Those of the candidates that a search does not list are
@@ -104,7 +111,7 @@ pub fn assess_on_curve(
         rank: 0,
         linkage: *linkage,
         crank_deg: crank_deg.to_vec(),
-        t1_at: assemblies.to_vec(),
+        t1_at: Assemblies::of(linkage, assemblies.to_vec()),
         frame_deg: given_frame().filter(|_| !is_function),
         input_offset_deg: offsets_deg.map(|[input, _]| input),
         output_offset_deg: offsets_deg.map(|[_, output]| output).filter(|_| !is_of_places),

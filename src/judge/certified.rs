@@ -26,9 +26,9 @@ pub fn same(one: &CrankLinkage, other: &CrankLinkage) -> bool {
     let numbers = |l: &CrankLinkage| match l {
         CrankLinkage::FourBar(l) => {
             let (a, b, offset) = (l.crank_pivot(), l.follower_pivot(), l.coupler_offset());
-            [a.re, a.im, b.re, b.im, l.crank(), l.coupler(), l.follower(), offset.re, offset.im]
+            vec![a.re, a.im, b.re, b.im, l.crank(), l.coupler(), l.follower(), offset.re, offset.im]
         }
-        CrankLinkage::SliderCrank(_) | CrankLinkage::InvertedSliderCrank(_) => l.numbers(),
+        _ => l.numbers(),
     };
     let far = one.pivots().map(|pivot| pivot.norm()).fold(0.0, f64::max);
     let reach = SAME * one.longest_link().max(one.crank_side()) + ROUNDED * far;

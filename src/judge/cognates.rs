@@ -109,7 +109,7 @@ pub(crate) fn alternative(form: &Candidate) -> Alternative {
     Alternative {
         linkage: form.linkage,
         crank_deg: form.crank_deg.clone(),
-        t1_at: form.t1_at.clone(),
+        t1_at: form.t1_at.to_vec(),
         linkage_type: form.linkage_type,
         accepted: form.accepted,
         sum_sq: form.error.sum_sq,

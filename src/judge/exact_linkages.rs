@@ -120,7 +120,7 @@ impl Class {
             rank: 0,
             linkage: best.linkage,
             crank_deg: best.crank_deg.clone(),
-            t1_at: best.t1_at.clone(),
+            t1_at: best.t1_at.to_vec(),
             miss: best.error.max,
             linkage_type: best.linkage_type,
             defects: best.defects.clone(),

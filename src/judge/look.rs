@@ -49,6 +49,9 @@ impl<'a> Look<'a> {
                 CrankLinkage::InvertedSliderCrank(linkage) => {
                     return Some(vec![[a, linkage.block_pivot(), c, d, p]]);
                 }
+                CrankLinkage::MultiLoop(linkage) => {
+                    return Some(vec![[a, linkage.follower_pivot(), c, d, p]]);
+                }
             };
             let b = linkage.follower_pivot();
             let z = linkage.coupler_ratio();

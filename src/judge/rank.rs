@@ -193,7 +193,9 @@ fn chosen_but_for(
     let floor = exact_objective(problem);
     let keys: Vec<Key> = found.iter().map(|candidate| Key::of(candidate, floor)).collect();
     // Equals that differ in their last digits are ordered by these, not by the order in which they were found.
-    let numbers = |i: usize| (found[i].linkage.kind(), found[i].linkage.numbers().map(in_order));
+    let numbers = |i: usize| {
+        (found[i].linkage.kind(), found[i].linkage.numbers().into_iter().map(in_order).collect::<Vec<i64>>())
+    };
     let by_key = |&i: &usize, &j: &usize| {
         keys[i].cmp(&keys[j]).then_with(|| numbers(i).cmp(&numbers(j))).then(i.cmp(&j))
     };

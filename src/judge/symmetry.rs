@@ -15,7 +15,7 @@ use super::look::{Look, NEAR};
 use super::unwrapped::unwrapped;
 use crate::judge::assess::assess_again;
 use crate::mechanism::{AssemblyMode, Complex, CrankLinkage};
-use crate::record::Candidate;
+use crate::record::{Assemblies, Candidate};
 use crate::task::Problem;
 use crate::task::{AngleOffset, Timing};
 use std::borrow::Cow;
@@ -145,6 +145,7 @@ impl Symmetry {
             }
             Timing::Prescribed { offset, .. } => crank_deg = in_step(problem, &linkage, *offset, &crank_deg)?,
         }
+        let t1_at = Assemblies::of(&linkage, t1_at);
         Some(Candidate { linkage, crank_deg, t1_at, ..candidate.clone() })
     }
 }

@@ -10,7 +10,8 @@
 //! | [`effort`] | counter of linkage positions computed between two checks for a stop, in this crate's own tests; elsewhere it does nothing |
 //! | [`four_bar`] | planar four-bar linkages: parameters, position, motion, mobility, coupler curve and cognates |
 //! | [`inverted_slider_crank`] | planar inverted slider-cranks, whose coupler slides through a block at a fixed pivot |
-//! | [`crank_linkage`] | linkages of one loop, which synthesis finds: four-bar, slider-crank and inverted slider-crank behind one type |
+//! | [`crank_linkage`] | linkages that a crank drives, of the kinds that synthesis finds, behind one type |
+//! | [`multi_loop`] | six-bars and eight-bars: a crank, and two or three dyads, with the lengths of their links |
 //! | [`plates`] | the links as flat plates with holes at the joints, which can be cut out |
 //! | [`slider`] | linkages of one loop with a slider: what the slider-crank and the inverted slider-crank have in common |
 //! | [`slider_crank`] | planar slider-cranks, whose coupler ends on a block that slides along a fixed line |
@@ -25,6 +26,7 @@ pub mod dyad_chain;
 pub(crate) mod effort;
 pub mod four_bar;
 pub mod inverted_slider_crank;
+pub mod multi_loop;
 pub mod plates;
 pub mod slider;
 pub mod slider_crank;
@@ -47,6 +49,7 @@ pub use four_bar::{
     Toggle, VectorLoop,
 };
 pub use inverted_slider_crank::{InvertedSliderCrank, InvertedSliderCrankParameters};
+pub use multi_loop::{ChainKeys, MultiLoop, NoMultiLoop};
 pub use slider::{SliderJoints, SliderLinkage, SliderPosition};
 pub use slider_crank::{SliderCrank, SliderCrankParameters};
 pub use unit::Unit;

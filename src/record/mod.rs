@@ -5,6 +5,7 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | [`assemblies`] | the assembly at each target point |
 //! | [`certificate`] | what is proved about a result: no linkage of the covered kind can have a lower sum of squares |
 //! | [`digest`] | the digest of the data that determine a search |
 //! | [`exact`] | exact synthesis: every linkage through nine points, counted, and the real ones listed |
@@ -17,7 +18,7 @@
 //! | [`suite`] | the figures of a suite: problems with a known answer, many seeds each |
 //! | [`sweep`] | sweeps: many problems that are one problem with different values of some keys |
 
-use crate::mechanism::{AssemblyMode, CrankLinkage, LinkageType, Unit};
+use crate::mechanism::{CrankLinkage, LinkageType, Unit};
 use crate::task::ranges::{Reference, Scales};
 pub use crate::task::requirement::LimitUnit;
 use crate::task::spec::{Method, ProblemSpec, TaskSpec, TransmissionOver};
@@ -25,6 +26,7 @@ use crate::task::{Defect, Sense};
 use digest::NotWritten;
 use serde::{Deserialize, Serialize};
 
+mod assemblies;
 mod certificate;
 pub mod digest;
 mod exact;
@@ -37,6 +39,7 @@ pub mod statistics;
 pub mod suite;
 pub mod sweep;
 
+pub use assemblies::Assemblies;
 pub use certificate::{Certificate, CertificatePart, Difference};
 pub use exact::{
     Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES, generic_classes,
@@ -268,8 +271,8 @@ pub struct Candidate {
     pub linkage: CrankLinkage,
     /// The crank angle at each target point, degrees from the x axis, unwrapped.
     pub crank_deg: Vec<f64>,
-    /// The assembly at each target point.
-    pub t1_at: Vec<AssemblyMode>,
+    /// The assembly at each target point; of a six-bar the signs of its dyads.
+    pub t1_at: Assemblies,
     /// In a motion: the angle from the direction C -> D to the body's x axis, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame_deg: Option<f64>,

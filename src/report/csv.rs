@@ -5,6 +5,7 @@ use super::body;
 use super::scene::first_position;
 use super::text::{cell, exact, push_exact};
 use super::words;
+use crate::mechanism::multi_loop::LinkPair;
 use crate::mechanism::{Complex, CouplerCurve, CrankLinkage, FourBar, Joints, LoopJoints, point};
 use crate::record::{Candidate, Member, Record};
 use crate::task::{Defect, TaskKind};
@@ -71,8 +72,11 @@ pub(super) const PARAMETERS: [Parameter; 11] = [
     ("By", |l| Some(l.second_pivot()?.im)),
     ("a", |l| Some(l.crank())),
     ("b", CrankLinkage::coupler),
-    ("c", |l| l.four_bar().map(FourBar::follower)),
-    ("d", |l| Some(l.crank_side())),
+    ("c", |l| {
+        let of_several = || l.multi_loop().map(|l| l.dyads()[0].lengths[1]);
+        l.four_bar().map(FourBar::follower).or_else(of_several)
+    }),
+    ("d", |l| l.multi_loop().is_none().then(|| l.crank_side())),
     ("e", |l| l.four_bar().map(FourBar::follower_side)),
     ("t1", |l| Some(l.assembly().sign())),
     ("t2", |l| Some(l.four_bar()?.side().sign())),
@@ -91,10 +95,40 @@ pub(super) const OF_SLIDERS: [Parameter; 6] = [
     ("coupler_y", |l| l.four_bar().is_none().then(|| l.coupler_offset().im)),
 ];
 
-/// Returns the parameters that linkages of these kinds have: those of a slider only where one is among them.
+/// The parameters that only linkages of several loops have: of each further dyad the places of its ends along and across the
+/// lines of the links that carry them, its two lengths and its sign. P is coupler_x and coupler_y on the line of its own link.
+pub(super) const OF_SEVERAL_LOOPS: [Parameter; 14] = [
+    ("X2x", |l| Some(dyad(l, 1)?.ends[0].re)),
+    ("X2y", |l| Some(dyad(l, 1)?.ends[0].im)),
+    ("Y2x", |l| Some(dyad(l, 1)?.ends[1].re)),
+    ("Y2y", |l| Some(dyad(l, 1)?.ends[1].im)),
+    ("X2F2", |l| Some(dyad(l, 1)?.lengths[0])),
+    ("Y2F2", |l| Some(dyad(l, 1)?.lengths[1])),
+    ("side2", |l| Some(dyad(l, 1)?.side.sign())),
+    ("X3x", |l| Some(dyad(l, 2)?.ends[0].re)),
+    ("X3y", |l| Some(dyad(l, 2)?.ends[0].im)),
+    ("Y3x", |l| Some(dyad(l, 2)?.ends[1].re)),
+    ("Y3y", |l| Some(dyad(l, 2)?.ends[1].im)),
+    ("X3F3", |l| Some(dyad(l, 2)?.lengths[0])),
+    ("Y3F3", |l| Some(dyad(l, 2)?.lengths[1])),
+    ("side3", |l| Some(dyad(l, 2)?.side.sign())),
+];
+
+/// Returns a dyad of a linkage of several loops.
+fn dyad(linkage: &CrankLinkage, index: usize) -> Option<&LinkPair> {
+    linkage.multi_loop()?.dyads().get(index)
+}
+
+/// Returns the parameters that linkages of these kinds have: those of a slider, and of several loops, only where one is among
+/// them.
 pub(super) fn parameters_of<'l>(linkages: impl IntoIterator<Item = &'l CrankLinkage>) -> Vec<Parameter> {
-    let sliders = linkages.into_iter().any(|linkage| linkage.four_bar().is_none());
-    PARAMETERS.into_iter().chain(OF_SLIDERS.into_iter().filter(|_| sliders)).collect()
+    let (mut others, mut dyads) = (false, 0);
+    for linkage in linkages {
+        others |= linkage.four_bar().is_none();
+        dyads = dyads.max(linkage.multi_loop().map_or(0, |linkage| 7 * (linkage.dyad_count() - 1)));
+    }
+    let of_sliders = OF_SLIDERS.into_iter().filter(|_| others);
+    PARAMETERS.into_iter().chain(of_sliders).chain(OF_SEVERAL_LOOPS.into_iter().take(dyads)).collect()
 }
 
 /// The header row of [`curve_csv`]; the curve of a motion has a last column [`BODY_ANGLE`], that of a function

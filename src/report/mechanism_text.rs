@@ -107,7 +107,7 @@ pub(super) fn dimensions(linkage: &Linkage) -> String {
                 p.assembly.sign()
             )
         }
-        Linkage::FourBar(_) | Linkage::Chain(_) => String::new(),
+        Linkage::FourBar(_) | Linkage::MultiLoop(_) | Linkage::Chain(_) => String::new(),
     }
 }
 

@@ -29,6 +29,7 @@ fn link_of(kind: LinkageKind, is_of_places: bool) -> &'static str {
     match (kind, is_of_places) {
         (LinkageKind::FourBar, _) => "follower",
         (LinkageKind::SliderCrank, _) => "slider",
+        (LinkageKind::SixBar | LinkageKind::EightBar, _) => "output",
         (LinkageKind::InvertedSliderCrank, true) => "rod",
         (LinkageKind::InvertedSliderCrank, false) => "block",
     }
@@ -45,6 +46,7 @@ pub(super) fn title(candidate: &Candidate) -> &'static str {
     match (candidate.linkage.kind(), candidate.output_offset.is_some()) {
         (LinkageKind::FourBar, _) => "Follower",
         (LinkageKind::SliderCrank, _) => "Slider",
+        (LinkageKind::SixBar | LinkageKind::EightBar, _) => "Output",
         (LinkageKind::InvertedSliderCrank, true) => "Rod",
         (LinkageKind::InvertedSliderCrank, false) => "Block",
     }

@@ -172,7 +172,7 @@ fn output_pin(candidate: &Candidate) -> Option<Box<dyn Fn(f64) -> Complex + '_>>
             let foot = linkage.line_point() + along * dot(pivot - linkage.line_point(), along);
             Some(Box::new(move |output| foot + along * (sign * (offset + output))))
         }
-        CrankLinkage::InvertedSliderCrank(_) => None,
+        CrankLinkage::InvertedSliderCrank(_) | CrankLinkage::MultiLoop(_) => None,
     }
 }
 

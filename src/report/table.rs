@@ -7,7 +7,7 @@ use super::text::{
     COLUMNS, NO_NUMBER, brief, clean, exact, grouped, indented, shortened, significant, wrapped,
 };
 use super::{output, price, words};
-use crate::mechanism::{CrankLinkage, LinkageKind, Unit};
+use crate::mechanism::{CrankLinkage, LinkageKind, MultiLoop, Unit};
 use crate::record::{AngleErrorRecord, Candidate, ErrorRecord, Record};
 use crate::task::spec::{Measure, ProblemSpec, TaskSpec};
 use crate::task::{Defect, TaskKind};
@@ -373,8 +373,30 @@ fn linkage_toml(linkage: &CrankLinkage) -> String {
             let parts = format!("A~=~{pivot}, B~=~{block}, a~=~{a}, offset~=~{offset}, {p}, t1~=~{t1}~}}");
             ("inverted_slider_crank", parts)
         }
+        CrankLinkage::MultiLoop(linkage) => return multi_loop_in_words(linkage),
     };
     wrapped(&format!("    {table} = {{ "), "      ", &parts, COLUMNS).replace('~', " ")
+}
+
+/// Returns a linkage of several loops link by link, to the last digit.
+fn multi_loop_in_words(linkage: &MultiLoop) -> String {
+    let pair = |[x, y]: [f64; 2]| format!("[{},~{}]", exact(x), exact(y));
+    let keys = linkage.keys();
+    let pivots = keys.pivots.iter().map(|(name, at)| format!("{name}~=~{}", pair(*at)));
+    let mut parts: Vec<String> = pivots.collect();
+    parts.push(format!("crank A-C~{}", exact(keys.crank.length)));
+    for joint in linkage.joints() {
+        if let Some(dyad) = keys.dyad.iter().find(|dyad| dyad.joint == joint.name) {
+            let ([x, y], [l1, l2]) = (&dyad.from, dyad.lengths.map(exact));
+            let side = i64::from(dyad.side);
+            parts.push(format!("{x}-{0}~{l1}, {y}-{0}~{l2}, side~{side}", dyad.joint));
+        }
+        if let Some(point) = keys.point.iter().find(|point| point.name == joint.name) {
+            parts.push(format!("{} on {}-{} at~{}", point.name, point.on[0], point.on[1], pair(point.at)));
+        }
+    }
+    let lead = format!("    {}: ", linkage.chain_kind().name());
+    wrapped(&lead, "      ", &parts.join("; "), COLUMNS).replace('~', " ")
 }
 
 /// Returns method, seed, cost and the reason why the search ended, on one line.

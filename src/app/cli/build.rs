@@ -93,6 +93,6 @@ fn no_room(given: &Subject) -> Ended {
 fn slot_end(linkage: &CrankLinkage) -> &'static str {
     match linkage.kind() {
         LinkageKind::InvertedSliderCrank => "the crank pin C, which the block reaches at a toggle",
-        LinkageKind::SliderCrank | LinkageKind::FourBar => "the crank's pivot A, which the block reaches",
+        _ => "the crank's pivot A, which the block reaches",
     }
 }

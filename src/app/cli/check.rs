@@ -54,6 +54,7 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
             }
             Linkage::SliderCrank(linkage) => format!("slider-crank {name}: {linkage}"),
             Linkage::InvertedSliderCrank(linkage) => format!("inverted slider-crank {name}: {linkage}"),
+            Linkage::MultiLoop(linkage) => format!("linkage {name}: {linkage}"),
             Linkage::Chain(chain) => {
                 format!("chain {name}: {} stages, points {}", chain.stages(), chain.names().join(", "))
             }

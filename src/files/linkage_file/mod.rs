@@ -1,8 +1,10 @@
 //! Linkage files: a four-bar in natural coordinates or as a vector loop, a linkage with a slider, or a chain of stages.
 
 mod chain;
+mod multi_loop;
 mod sliders;
 
+pub use multi_loop::multi_loop_to_toml;
 pub use sliders::{inverted_slider_crank_to_toml, slider_crank_to_toml};
 
 use crate::files::diagnostic::{Checked, Diagnostic};
@@ -12,7 +14,7 @@ use crate::files::toml_text::TomlText;
 use crate::files::toml_values::{Count, Number, OnlyTable, XY};
 use crate::mechanism::{
     AssemblyMode, CouplerSide, CrankLinkage, FourBar, InvertedSliderCrank, Linkage, LinkageError,
-    MAX_MAGNITUDE, NaturalCoordinates, SliderCrank, Unit, VectorLoop,
+    MAX_MAGNITUDE, MultiLoop, NaturalCoordinates, SliderCrank, Unit, VectorLoop,
 };
 use crate::record::Candidate;
 use crate::task::Sense;
@@ -130,6 +132,8 @@ pub fn kind_in_words(linkage: &Linkage) -> &'static str {
         Linkage::FourBar(_) => "a four-bar",
         Linkage::SliderCrank(_) => "a slider-crank",
         Linkage::InvertedSliderCrank(_) => "an inverted slider-crank",
+        Linkage::MultiLoop(linkage) if linkage.dyad_count() > 2 => "an eight-bar",
+        Linkage::MultiLoop(_) => "a six-bar",
         Linkage::Chain(_) => "a chain",
     }
 }
@@ -180,13 +184,13 @@ fn refuse_kind<T>(
     let table = match linkage {
         Linkage::SliderCrank(_) => "slider_crank",
         Linkage::InvertedSliderCrank(_) => "inverted_slider_crank",
-        Linkage::Chain(_) | Linkage::FourBar(_) => "chain",
+        Linkage::Chain(_) | Linkage::MultiLoop(_) | Linkage::FourBar(_) => "chain",
     };
     toml.refuse_key(table, message, help)
 }
 
-/// Reads a file with a linkage of one loop: a four-bar, a slider-crank or an inverted slider-crank, also as the chain that
-/// it is.
+/// Reads a file with a linkage of a kind that synthesis finds: a four-bar, a linkage with a slider, a six-bar or an
+/// eight-bar, also as the chain that it is.
 ///
 /// # Errors
 /// As [`load`].
@@ -195,7 +199,7 @@ pub fn load_crank_linkage(path: &Path) -> Result<LinkageFile<CrankLinkage>, Box<
     parse_crank_linkage(&path.display().to_string(), &text)
 }
 
-/// Reads the linkage of one loop of a text, as [`load_crank_linkage`] does.
+/// Reads such a linkage of a text, as [`load_crank_linkage`] does.
 ///
 /// # Errors
 /// As [`load`].
@@ -205,18 +209,21 @@ pub fn parse_crank_linkage(
 ) -> Result<LinkageFile<CrankLinkage>, Box<Diagnostic>> {
     let AnyLinkageFile { name, unit, linkage } = parse_any(file_name, text)?;
     let found = match &linkage {
-        Linkage::FourBar(linkage) => Some(CrankLinkage::FourBar(*linkage)),
-        Linkage::SliderCrank(linkage) => Some(CrankLinkage::SliderCrank(*linkage)),
-        Linkage::InvertedSliderCrank(linkage) => Some(CrankLinkage::InvertedSliderCrank(*linkage)),
+        Linkage::FourBar(linkage) => Ok(CrankLinkage::FourBar(*linkage)),
+        Linkage::SliderCrank(linkage) => Ok(CrankLinkage::SliderCrank(*linkage)),
+        Linkage::InvertedSliderCrank(linkage) => Ok(CrankLinkage::InvertedSliderCrank(*linkage)),
+        Linkage::MultiLoop(linkage) => Ok(CrankLinkage::MultiLoop(**linkage)),
         Linkage::Chain(chain) => SliderCrank::from_chain(chain)
             .map(CrankLinkage::SliderCrank)
-            .or_else(|| InvertedSliderCrank::from_chain(chain).map(CrankLinkage::InvertedSliderCrank)),
+            .or_else(|| InvertedSliderCrank::from_chain(chain).map(CrankLinkage::InvertedSliderCrank))
+            .map_or_else(|| MultiLoop::from_chain(chain).map(CrankLinkage::MultiLoop), Ok),
     };
     match found {
-        Some(linkage) => Ok(LinkageFile { name, unit, linkage }),
-        None => {
-            let message =
-                format!("{} has no plates: they are made of linkages of one loop", kind_in_words(&linkage));
+        Ok(linkage) => Ok(LinkageFile { name, unit, linkage }),
+        Err(error) => {
+            let message = format!(
+                "this chain is none of the linkages that are searched for, drawn and compared: as a six-bar, {error}"
+            );
             let help = "give a linkage file with [linkage], [vector_loop], [slider_crank] or [inverted_slider_crank]";
             refuse_kind((file_name, text), &linkage, message, help)
         }
@@ -404,6 +411,7 @@ pub fn any_to_toml(name: &str, unit: Option<Unit>, linkage: &CrankLinkage) -> St
         CrankLinkage::FourBar(linkage) => to_toml(name, unit, linkage),
         CrankLinkage::SliderCrank(linkage) => slider_crank_to_toml(name, unit, linkage),
         CrankLinkage::InvertedSliderCrank(linkage) => inverted_slider_crank_to_toml(name, unit, linkage),
+        CrankLinkage::MultiLoop(linkage) => multi_loop::multi_loop_to_toml(name, unit, linkage),
     }
 }
 

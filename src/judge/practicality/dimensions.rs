@@ -44,13 +44,14 @@ pub(super) trait Dimensions: Sync {
     fn by_ground(&self, shifts: &[Complex]) -> Option<Complex>;
 }
 
-/// Returns the dimensions of a linkage for its path at some positions.
-pub(super) fn of_path(linkage: &CrankLinkage, positions: &[At]) -> Box<dyn Dimensions> {
-    match *linkage {
+/// Returns the dimensions of a linkage for its path at some positions; `None` of one of several loops.
+pub(super) fn of_path(linkage: &CrankLinkage, positions: &[At]) -> Option<Box<dyn Dimensions>> {
+    Some(match *linkage {
         CrankLinkage::FourBar(linkage) => Box::new(OfFourBar { linkage, flat: is_flat(&linkage) }),
         CrankLinkage::SliderCrank(linkage) => Box::new(OfSliderCrank::new(linkage, positions)),
         CrankLinkage::InvertedSliderCrank(linkage) => Box::new(linkage),
-    }
+        CrankLinkage::MultiLoop(_) => return None,
+    })
 }
 
 /// Returns whether the coupler of a four-bar is measured by coupler_x and coupler_y.
@@ -142,6 +143,7 @@ pub(super) fn of_output(
         (CrankLinkage::SliderCrank(linkage), Output::Place) => {
             Some(Box::new(OfSliderPlace(OfSliderCrank::new(linkage, positions))))
         }
+        (CrankLinkage::MultiLoop(_), _) => None,
         (CrankLinkage::InvertedSliderCrank(linkage), output) => Some(Box::new(OfBlock { linkage, output })),
     }
 }

@@ -21,9 +21,12 @@ pub struct Sweep {
 impl Sweep {
     /// Returns the whole motion of a linkage by itself without passing a toggle: the full turn, or the arc of the crank (of
     /// two arcs the first, of a four-bar the one to the left of A -> B) with the linkage's own assembly mode; `None` if it
-    /// cannot be assembled.
+    /// cannot be assembled, and of a linkage of several loops, whose plates are not made.
     pub fn of_linkage(linkage: impl Into<CrankLinkage>) -> Option<Self> {
         let linkage = linkage.into();
+        if linkage.multi_loop().is_some() {
+            return None;
+        }
         let input = linkage.mobility().input;
         let [from, to] = match input {
             InputRange::None => return None,

@@ -7,7 +7,7 @@
 use super::four_bar::motion::Turning;
 use super::four_bar::transmission::TransmissionExtremes;
 use super::slider::motion::Sliding;
-use super::{Chain, Complex, FourBar, InvertedSliderCrank, SliderCrank};
+use super::{Chain, Complex, FourBar, InvertedSliderCrank, MultiLoop, SliderCrank};
 use crate::mechanism::four_bar::motion::CrankMotion;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -21,6 +21,8 @@ pub enum Linkage {
     SliderCrank(SliderCrank),
     /// An inverted slider-crank.
     InvertedSliderCrank(InvertedSliderCrank),
+    /// A six-bar or an eight-bar.
+    MultiLoop(Box<MultiLoop>),
     /// A chain.
     Chain(Box<Chain>),
 }
@@ -32,6 +34,7 @@ impl Linkage {
             Linkage::FourBar(linkage) => linkage,
             Linkage::SliderCrank(linkage) => linkage,
             Linkage::InvertedSliderCrank(linkage) => linkage,
+            Linkage::MultiLoop(linkage) => linkage.as_ref(),
             Linkage::Chain(chain) => chain.as_ref(),
         }
     }
@@ -168,7 +171,8 @@ pub enum Slide {
 
 /// A planar mechanism with one driven crank, which knows its own kinematics.
 pub trait Mechanism {
-    /// Returns the kind as a word of files: four-bar, slider-crank, inverted-slider-crank or chain.
+    /// Returns the kind as a word of files: four-bar, slider-crank, inverted-slider-crank, six-bar,
+    /// eight-bar or chain.
     fn kind(&self) -> &'static str;
 
     /// Returns the names of the joints and points, the fixed pivots first.

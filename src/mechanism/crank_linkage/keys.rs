@@ -1,9 +1,9 @@
-//! How a linkage of one loop is written and read: a four-bar by its keys alone, other kinds with their name under `kind`.
+//! How a linkage is written and read: a four-bar by its keys alone, other kinds with their name under `kind`.
 
 use super::{CrankLinkage, LinkageKind};
 use crate::mechanism::{
-    AssemblyMode, CouplerSide, FourBar, InvertedSliderCrank, InvertedSliderCrankParameters, LinkageError,
-    NaturalCoordinates, SliderCrank, SliderCrankParameters,
+    AssemblyMode, ChainKeys, CouplerSide, FourBar, InvertedSliderCrank, InvertedSliderCrankParameters,
+    LinkageError, MultiLoop, NaturalCoordinates, NoMultiLoop, SliderCrank, SliderCrankParameters,
 };
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use std::borrow::Cow;
@@ -20,6 +20,14 @@ enum SliderCrankKind {
 #[serde(rename_all = "kebab-case")]
 enum InvertedSliderCrankKind {
     InvertedSliderCrank,
+}
+
+/// The name of the kind, as the key `kind` of a linkage of several loops.
+#[derive(Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum MultiLoopKind {
+    SixBar,
+    EightBar,
 }
 
 /// A linkage as it stands in records: a four-bar by its keys alone, other kinds with their name under `kind`.
@@ -42,6 +50,13 @@ enum Written {
         #[serde(flatten)]
         parameters: InvertedSliderCrankParameters,
     },
+    /// A six-bar or an eight-bar.
+    MultiLoop {
+        /// The kind.
+        kind: MultiLoopKind,
+        /// Its chain.
+        chain: ChainKeys,
+    },
 }
 
 impl Serialize for CrankLinkage {
@@ -54,6 +69,13 @@ impl Serialize for CrankLinkage {
             CrankLinkage::InvertedSliderCrank(linkage) => Written::InvertedSliderCrank {
                 kind: InvertedSliderCrankKind::InvertedSliderCrank,
                 parameters: linkage.parameters(),
+            },
+            CrankLinkage::MultiLoop(linkage) => Written::MultiLoop {
+                kind: match linkage.dyad_count() {
+                    2 => MultiLoopKind::SixBar,
+                    _ => MultiLoopKind::EightBar,
+                },
+                chain: linkage.keys(),
             },
         };
         written.serialize(serializer)
@@ -68,14 +90,15 @@ pub struct LinkageKeys {
     /// The kind; absent of a four-bar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<LinkageKind>,
-    /// The fixed pivot of the crank.
-    #[serde(rename = "A")]
-    pub crank_pivot: [f64; 2],
+    /// The fixed pivot of the crank, of every kind but those of several loops.
+    #[serde(rename = "A", default, skip_serializing_if = "Option::is_none")]
+    pub crank_pivot: Option<[f64; 2]>,
     /// The fixed pivot of a four-bar's follower, or of the block of an inverted slider-crank.
     #[serde(rename = "B", default, skip_serializing_if = "Option::is_none")]
     pub second_pivot: Option<[f64; 2]>,
-    /// |AC|.
-    pub a: f64,
+    /// |AC|, of every kind but those of several loops.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub a: Option<f64>,
     /// |CD| of a four-bar and of a slider-crank.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub b: Option<f64>,
@@ -105,12 +128,16 @@ pub struct LinkageKeys {
     pub coupler_y: Option<f64>,
     /// The assembly: of a four-bar 1 where D lies left of the line from C to B; of a slider-crank where D is the one of two
     /// places that lies further along the line; of an inverted one where the block is ahead of C along the rod.
-    #[schemars(with = "i64")]
-    pub t1: AssemblyMode,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<i64>")]
+    pub t1: Option<AssemblyMode>,
     /// The side of a four-bar's coupler point: 1 where P lies left of the line from C to D.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<i64>")]
     pub t2: Option<CouplerSide>,
+    /// The chain of a six-bar or an eight-bar.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chain: Option<ChainKeys>,
 }
 
 /// The reason why keys are no linkage.
@@ -125,6 +152,12 @@ pub enum NoLinkage {
     /// The values are those of no linkage.
     #[error(transparent)]
     Linkage(#[from] LinkageError),
+    /// The chain is that of no six-bar or eight-bar.
+    #[error(transparent)]
+    MultiLoop(#[from] NoMultiLoop),
+    /// The chain has another number of dyads than the kind.
+    #[error("this chain is not that of a {0}")]
+    OtherKind(LinkageKind),
 }
 
 impl LinkageKeys {
@@ -135,9 +168,14 @@ impl LinkageKeys {
             kind == LinkageKind::SliderCrank,
             kind == LinkageKind::InvertedSliderCrank,
         );
+        let several = kind.dyads().is_some();
         [
-            ("B", self.second_pivot.is_some() && slider),
-            ("b", self.b.is_some() && inverted),
+            ("A", self.crank_pivot.is_some() && several),
+            ("a", self.a.is_some() && several),
+            ("t1", self.t1.is_some() && several),
+            ("chain", self.chain.is_some() && !several),
+            ("B", self.second_pivot.is_some() && (slider || several)),
+            ("b", self.b.is_some() && (inverted || several)),
             ("c", self.c.is_some() && !four_bar),
             ("d", self.d.is_some() && !four_bar),
             ("e", self.e.is_some() && !four_bar),
@@ -145,8 +183,8 @@ impl LinkageKeys {
             ("line_point", self.line_point.is_some() && !slider),
             ("line_deg", self.line_deg.is_some() && !slider),
             ("offset", self.offset.is_some() && !inverted),
-            ("coupler_x", self.coupler_x.is_some() && four_bar),
-            ("coupler_y", self.coupler_y.is_some() && four_bar),
+            ("coupler_x", self.coupler_x.is_some() && (four_bar || several)),
+            ("coupler_y", self.coupler_y.is_some() && (four_bar || several)),
         ]
         .into_iter()
         .find_map(|(key, strays)| strays.then_some(key))
@@ -164,7 +202,15 @@ impl TryFrom<LinkageKeys> for CrankLinkage {
         if let Some(key) = keys.stray(kind) {
             return Err(NoLinkage::Stray(kind, key));
         }
-        let (crank_pivot, crank, assembly) = (keys.crank_pivot, keys.a, keys.t1);
+        if let Some(dyads) = kind.dyads() {
+            let linkage = MultiLoop::from_keys(&given(keys.chain, "chain")?)?;
+            return match linkage.dyad_count() == dyads {
+                true => Ok(linkage.into()),
+                false => Err(NoLinkage::OtherKind(kind)),
+            };
+        }
+        let crank_pivot = given(keys.crank_pivot, "A")?;
+        let (crank, assembly) = (given(keys.a, "a")?, given(keys.t1, "t1")?);
         Ok(match kind {
             LinkageKind::FourBar => FourBar::new(NaturalCoordinates {
                 crank_pivot,
@@ -199,6 +245,8 @@ impl TryFrom<LinkageKeys> for CrankLinkage {
                 assembly,
             })?
             .into(),
+            // Read above.
+            LinkageKind::SixBar | LinkageKind::EightBar => return Err(NoLinkage::Missing("chain")),
         })
     }
 }

@@ -1,8 +1,8 @@
-//! The kinds of linkages of one loop, by their names in files.
+//! The kinds of linkages that synthesis finds, by their names in files.
 
 use serde::{Deserialize, Serialize};
 
-/// The kinds of linkages of one loop.
+/// The kinds of linkages that a crank drives.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema,
 )]
@@ -14,12 +14,35 @@ pub enum LinkageKind {
     SliderCrank,
     /// Three pins and a block at a fixed pivot, through which the coupler slides.
     InvertedSliderCrank,
+    /// A crank and two dyads.
+    SixBar,
+    /// A crank and three dyads.
+    EightBar,
 }
 
 impl LinkageKind {
     /// Every kind.
-    pub const ALL: [LinkageKind; 3] =
-        [LinkageKind::FourBar, LinkageKind::SliderCrank, LinkageKind::InvertedSliderCrank];
+    pub const ALL: [LinkageKind; 5] = [
+        LinkageKind::FourBar,
+        LinkageKind::SliderCrank,
+        LinkageKind::InvertedSliderCrank,
+        LinkageKind::SixBar,
+        LinkageKind::EightBar,
+    ];
+
+    /// Returns whether it has a slider.
+    pub fn has_slider(self) -> bool {
+        matches!(self, LinkageKind::SliderCrank | LinkageKind::InvertedSliderCrank)
+    }
+
+    /// Returns the number of dyads of a linkage of several loops, a six-bar or an eight-bar.
+    pub fn dyads(self) -> Option<usize> {
+        match self {
+            LinkageKind::SixBar => Some(2),
+            LinkageKind::EightBar => Some(3),
+            _ => None,
+        }
+    }
 
     /// Returns the name in files: `slider-crank`.
     pub fn name(self) -> &'static str {
@@ -27,6 +50,8 @@ impl LinkageKind {
             LinkageKind::FourBar => "four-bar",
             LinkageKind::SliderCrank => "slider-crank",
             LinkageKind::InvertedSliderCrank => "inverted-slider-crank",
+            LinkageKind::SixBar => "six-bar",
+            LinkageKind::EightBar => "eight-bar",
         }
     }
 }

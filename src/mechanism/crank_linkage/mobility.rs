@@ -1,8 +1,8 @@
-//! Mobility of linkages of one loop: how far the input turns, on which circuits and branches.
+//! Mobility of linkages: how far the input turns, on which circuits and branches.
 
 use crate::mechanism::{AssemblyMode, Branch, Circuit, InputArc, InputRange, LinkageType};
 
-/// Mobility of a linkage of one loop.
+/// Mobility of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopMobility {
     /// The type of a four-bar; `None` of other kinds, or if the links cannot be assembled.

@@ -1,7 +1,9 @@
-//! Linkages of one loop, which synthesis finds: four-bar, slider-crank and inverted slider-crank behind one type.
+//! Linkages that a crank drives, of the kinds that synthesis finds, behind one type: four-bar, slider-crank, inverted
+//! slider-crank, and six-bars and eight-bars.
 //!
-//! Each is C = A + a e^{i phi}, a coupler through C that carries P, and one closure with two roots, told by t1; see
-//! [`slider`](super::slider). A four-bar's numbers are those of [`FourBar`], to the last digit.
+//! The first three have one loop: C = A + a e^{i phi}, a coupler through C that carries P, and one closure with two roots, told by
+//! t1; see [`slider`](super::slider). A four-bar's numbers are those of [`FourBar`], to the last digit. Six-bars and eight-bars
+//! ([`MultiLoop`]) have a sign for each dyad; t1 is that of the first, and the others are part of the linkage.
 
 mod keys;
 mod kind;
@@ -12,16 +14,17 @@ pub use kind::LinkageKind;
 pub use mobility::LoopMobility;
 
 use super::any::Mechanism;
+use super::dyad_chain::kinds::COUPLER;
 use super::four_bar::coupler_curve::SingleLoop;
 use super::four_bar::transmission::TransmissionExtremes;
 use super::{
-    AssemblyMode, Complex, FourBar, InputArc, InvertedSliderCrank, InvertedSliderCrankParameters, Joints,
-    LinkageError, LinkageType, NaturalCoordinates, OnCircuit, SliderCrank, SliderCrankParameters,
-    SliderJoints, SliderLinkage, SliderPosition, dot, least_and_greatest, xy,
+    AssemblyMode, Complex, FourBar, InputArc, InputRange, InvertedSliderCrank, InvertedSliderCrankParameters,
+    Joints, LinkageError, LinkageType, MultiLoop, NaturalCoordinates, OnCircuit, SliderCrank,
+    SliderCrankParameters, SliderJoints, SliderLinkage, SliderPosition, dot, least_and_greatest, xy,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A linkage of one loop.
+/// A linkage that a crank drives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CrankLinkage {
     /// A four-bar.
@@ -30,14 +33,18 @@ pub enum CrankLinkage {
     SliderCrank(SliderCrank),
     /// An inverted slider-crank.
     InvertedSliderCrank(InvertedSliderCrank),
+    /// A six-bar or an eight-bar.
+    MultiLoop(MultiLoop),
 }
 
-/// A position of a linkage of one loop.
+/// A position of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopJoints {
-    /// C, D and P; D of an inverted slider-crank is the foot of the perpendicular from B on the coupler's line.
+    /// C, D and P; D of an inverted slider-crank is the foot of the perpendicular from B on the coupler's line, of a six-bar the
+    /// joint of its first dyad.
     pub joints: Joints,
-    /// The direction of the coupler from C, in which D lies at t1 = +1; not of length 1.
+    /// The direction of the coupler from C, in which D lies at t1 = +1; of a six-bar that of the body that carries P; not of
+    /// length 1.
     pub coupler: Complex,
 }
 
@@ -67,6 +74,8 @@ impl CrankLinkage {
             CrankLinkage::FourBar(_) => LinkageKind::FourBar,
             CrankLinkage::SliderCrank(_) => LinkageKind::SliderCrank,
             CrankLinkage::InvertedSliderCrank(_) => LinkageKind::InvertedSliderCrank,
+            CrankLinkage::MultiLoop(linkage) if linkage.dyad_count() > 2 => LinkageKind::EightBar,
+            CrankLinkage::MultiLoop(_) => LinkageKind::SixBar,
         }
     }
 
@@ -74,7 +83,15 @@ impl CrankLinkage {
     pub fn four_bar(&self) -> Option<&FourBar> {
         match self {
             CrankLinkage::FourBar(linkage) => Some(linkage),
-            CrankLinkage::SliderCrank(_) | CrankLinkage::InvertedSliderCrank(_) => None,
+            _ => None,
+        }
+    }
+
+    /// Returns the six-bar or eight-bar, if it is one.
+    pub fn multi_loop(&self) -> Option<&MultiLoop> {
+        match self {
+            CrankLinkage::MultiLoop(linkage) => Some(linkage),
+            _ => None,
         }
     }
 
@@ -82,7 +99,7 @@ impl CrankLinkage {
     pub fn slider_crank(&self) -> Option<&SliderCrank> {
         match self {
             CrankLinkage::SliderCrank(linkage) => Some(linkage),
-            CrankLinkage::FourBar(_) | CrankLinkage::InvertedSliderCrank(_) => None,
+            _ => None,
         }
     }
 
@@ -90,7 +107,7 @@ impl CrankLinkage {
     pub fn inverted_slider_crank(&self) -> Option<&InvertedSliderCrank> {
         match self {
             CrankLinkage::InvertedSliderCrank(linkage) => Some(linkage),
-            CrankLinkage::FourBar(_) | CrankLinkage::SliderCrank(_) => None,
+            _ => None,
         }
     }
 
@@ -100,6 +117,7 @@ impl CrankLinkage {
             CrankLinkage::FourBar(linkage) => linkage,
             CrankLinkage::SliderCrank(linkage) => linkage,
             CrankLinkage::InvertedSliderCrank(linkage) => linkage,
+            CrankLinkage::MultiLoop(linkage) => linkage,
         }
     }
 
@@ -120,6 +138,7 @@ impl CrankLinkage {
             CrankLinkage::FourBar(linkage) => linkage.crank_pivot(),
             CrankLinkage::SliderCrank(linkage) => linkage.crank_pivot(),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.crank_pivot(),
+            CrankLinkage::MultiLoop(linkage) => linkage.crank_pivot(),
         }
     }
 
@@ -129,12 +148,14 @@ impl CrankLinkage {
             CrankLinkage::FourBar(linkage) => Some(linkage.follower_pivot()),
             CrankLinkage::SliderCrank(_) => None,
             CrankLinkage::InvertedSliderCrank(linkage) => Some(linkage.block_pivot()),
+            CrankLinkage::MultiLoop(linkage) => Some(linkage.follower_pivot()),
         }
     }
 
     /// Returns the fixed pivots.
     pub fn pivots(&self) -> impl Iterator<Item = Complex> + use<> {
-        std::iter::once(self.crank_pivot()).chain(self.second_pivot())
+        let of_one_loop = || std::iter::once(self.crank_pivot()).chain(self.second_pivot()).collect();
+        self.multi_loop().map_or_else(of_one_loop, MultiLoop::pivots).into_iter()
     }
 
     /// Returns a = |AC|, the length of the crank.
@@ -143,15 +164,18 @@ impl CrankLinkage {
             CrankLinkage::FourBar(linkage) => linkage.crank(),
             CrankLinkage::SliderCrank(linkage) => linkage.crank(),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.crank(),
+            CrankLinkage::MultiLoop(linkage) => linkage.crank(),
         }
     }
 
-    /// Returns P along and across the coupler from C, as lengths.
+    /// Returns P along and across the coupler from C, as lengths; of a six-bar along and across the line of its body
+    /// ([`multi_loop`](super::multi_loop)).
     pub fn coupler_offset(&self) -> Complex {
         match self {
             CrankLinkage::FourBar(linkage) => linkage.coupler_offset(),
             CrankLinkage::SliderCrank(linkage) => linkage.coupler_offset(),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.coupler_offset(),
+            CrankLinkage::MultiLoop(linkage) => linkage.coupler_point(),
         }
     }
 
@@ -162,16 +186,19 @@ impl CrankLinkage {
             CrankLinkage::FourBar(linkage) => linkage.ground_angle(),
             CrankLinkage::SliderCrank(linkage) => linkage.line_angle(),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.ground_angle(),
+            CrankLinkage::MultiLoop(linkage) => (linkage.follower_pivot() - linkage.crank_pivot()).arg(),
         }
     }
 
     /// Returns the ratio of the longest to the shortest link: of ground, a, b, c of a four-bar, a and b of a slider-crank,
-    /// ground and a of an inverted one. Infinite for coincident pivots.
+    /// ground and a of an inverted one, all distances between joints of one body of a six-bar. Infinite for coincident
+    /// pivots.
     pub fn link_ratio(&self) -> f64 {
         match self {
             CrankLinkage::FourBar(linkage) => linkage.link_ratio(),
             CrankLinkage::SliderCrank(linkage) => linkage.link_ratio(),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.link_ratio(),
+            CrankLinkage::MultiLoop(linkage) => linkage.link_ratio(),
         }
     }
 
@@ -181,6 +208,7 @@ impl CrankLinkage {
             CrankLinkage::FourBar(linkage) => linkage.longest_link(),
             CrankLinkage::SliderCrank(linkage) => linkage.crank().max(linkage.coupler()),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.crank().max(linkage.ground()),
+            CrankLinkage::MultiLoop(linkage) => linkage.longest_link(),
         }
     }
 
@@ -190,6 +218,7 @@ impl CrankLinkage {
             CrankLinkage::FourBar(linkage) => Some(linkage.coupler()),
             CrankLinkage::SliderCrank(linkage) => Some(linkage.coupler()),
             CrankLinkage::InvertedSliderCrank(_) => None,
+            CrankLinkage::MultiLoop(linkage) => Some(linkage.dyads()[0].lengths[0]),
         }
     }
 
@@ -199,24 +228,30 @@ impl CrankLinkage {
             CrankLinkage::FourBar(linkage) => Some(linkage.ground()),
             CrankLinkage::SliderCrank(_) => None,
             CrankLinkage::InvertedSliderCrank(linkage) => Some(linkage.ground()),
+            CrankLinkage::MultiLoop(linkage) => {
+                Some((linkage.follower_pivot() - linkage.crank_pivot()).norm())
+            }
         }
     }
 
-    /// Returns e = |DP|; `None` of an inverted slider-crank, whose D moves along the coupler.
+    /// Returns e = |DP|; `None` of an inverted slider-crank, whose D moves along the coupler, and of a
+    /// six-bar, whose P lies on another link.
     pub fn second_side(&self) -> Option<f64> {
         match self {
             CrankLinkage::FourBar(linkage) => Some(linkage.follower_side()),
             CrankLinkage::SliderCrank(linkage) => Some((linkage.coupler_offset() - linkage.coupler()).norm()),
-            CrankLinkage::InvertedSliderCrank(_) => None,
+            CrankLinkage::InvertedSliderCrank(_) | CrankLinkage::MultiLoop(_) => None,
         }
     }
 
-    /// Returns |CP|, the distance from the crank pin to the coupler point.
+    /// Returns |CP|, the distance from the crank pin to the coupler point; of a six-bar that of P from the
+    /// first joint of its body's line.
     pub fn crank_side(&self) -> f64 {
         match self {
             CrankLinkage::FourBar(linkage) => linkage.crank_side(),
             CrankLinkage::SliderCrank(linkage) => linkage.coupler_offset().norm(),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.coupler_offset().norm(),
+            CrankLinkage::MultiLoop(linkage) => linkage.coupler_point().norm(),
         }
     }
 
@@ -228,6 +263,7 @@ impl CrankLinkage {
             }
             CrankLinkage::SliderCrank(linkage) => linkage.longest(),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.longest(),
+            CrankLinkage::MultiLoop(linkage) => linkage.longest(),
         }
     }
 
@@ -247,26 +283,37 @@ impl CrankLinkage {
             CrankLinkage::InvertedSliderCrank(linkage) => {
                 of_slider(linkage.position_with(crank_angle, assembly))
             }
+            CrankLinkage::MultiLoop(linkage) => {
+                let bodies = linkage.with_assembly(assembly).bodies(crank_angle)?;
+                let traced = linkage.chain_kind().traced();
+                let joints = Joints {
+                    crank_pin: bodies.origins[COUPLER],
+                    follower_pin: bodies.place(COUPLER, Complex::new(linkage.dyads()[0].lengths[0], 0.0)),
+                    coupler_point: bodies.place(traced, linkage.coupler_point()),
+                };
+                Some(LoopJoints { joints, coupler: bodies.directions[traced] })
+            }
         }
     }
 
     /// Computes the angle of the output link at a position from the x axis, radians: of the follower of a four-bar, of the
-    /// block of an inverted slider-crank, which turns with the coupler. `None` of a slider-crank, whose slider does not turn.
+    /// block of an inverted slider-crank, which turns with the coupler. `None` of a slider-crank, whose slider does not turn,
+    /// and of a six-bar, of which no link is the output.
     pub fn output_angle(&self, at: &LoopJoints) -> Option<f64> {
         match self {
             CrankLinkage::FourBar(linkage) => Some((at.joints.follower_pin - linkage.follower_pivot()).arg()),
-            CrankLinkage::SliderCrank(_) => None,
+            CrankLinkage::SliderCrank(_) | CrankLinkage::MultiLoop(_) => None,
             CrankLinkage::InvertedSliderCrank(_) => Some(at.coupler.arg()),
         }
     }
 
     /// Computes the place of the slider at a position: of a slider-crank along its line, in the line's direction from the foot
-    /// of the perpendicular from A; of an inverted one that of the block along the coupler's line from C. `None` of a
-    /// four-bar.
+    /// of the perpendicular from A; of an inverted one that of the block along the coupler's line from C. `None` of
+    /// other kinds.
     pub fn slider_place(&self, at: &LoopJoints) -> Option<f64> {
         let Joints { crank_pin, follower_pin, .. } = at.joints;
         match self {
-            CrankLinkage::FourBar(_) => None,
+            CrankLinkage::FourBar(_) | CrankLinkage::MultiLoop(_) => None,
             CrankLinkage::SliderCrank(linkage) => {
                 Some(dot(follower_pin - linkage.crank_pivot(), linkage.line_direction()))
             }
@@ -276,14 +323,15 @@ impl CrankLinkage {
         }
     }
 
-    /// Computes the transmission angle at a crank angle, radians; of a four-bar the nearest flat angle, 0 or pi, if the loop is
-    /// open, of other kinds 0.
+    /// Computes the transmission angle at a crank angle, radians, of a six-bar that of the dyad nearest to flat; of a four-bar the
+    /// nearest flat angle, 0 or pi, if the loop is open, of other kinds 0.
     pub fn transmission_at(&self, crank_angle: f64) -> f64 {
         let crank = || Complex::from_polar(1.0, crank_angle);
         match self {
             CrankLinkage::FourBar(linkage) => linkage.angle_at_follower_pin(crank_angle),
             CrankLinkage::SliderCrank(linkage) => linkage.transmission_toward(crank()),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.transmission_toward(crank()),
+            CrankLinkage::MultiLoop(linkage) => linkage.transmission_at(crank_angle),
         }
     }
 
@@ -307,6 +355,12 @@ impl CrankLinkage {
             }
             CrankLinkage::SliderCrank(linkage) => of_slider(linkage.mobility()),
             CrankLinkage::InvertedSliderCrank(linkage) => of_slider(linkage.mobility()),
+            CrankLinkage::MultiLoop(linkage) => {
+                // One that does not turn fully cannot be driven by a motor.
+                let margin = linkage.full_turn_margin();
+                let input = if margin > 0.0 { InputRange::Full } else { InputRange::None };
+                LoopMobility { linkage_type: None, margin, input, change_point: false }
+            }
         }
     }
 
@@ -316,23 +370,25 @@ impl CrankLinkage {
             CrankLinkage::FourBar(linkage) => Some(linkage.transmission_over_cycle()),
             CrankLinkage::SliderCrank(linkage) => linkage.transmission_over_range(),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.transmission_over_range(),
+            CrankLinkage::MultiLoop(linkage) => Some(linkage.transmission_between([0.0, TAU])),
         }
     }
 
     /// Returns its numbers, by which equals are ordered: those of its keys, as many as there are.
-    pub fn numbers(&self) -> [f64; 9] {
+    pub fn numbers(&self) -> Vec<f64> {
         match self {
-            CrankLinkage::FourBar(linkage) => linkage.natural_coordinates().numbers(),
+            CrankLinkage::FourBar(linkage) => linkage.natural_coordinates().numbers().to_vec(),
             CrankLinkage::SliderCrank(linkage) => {
                 let p = linkage.parameters();
                 let ([ax, ay], [qx, qy]) = (p.crank_pivot, p.line_point);
-                [ax, ay, qx, qy, p.line_deg, p.crank, p.coupler, p.coupler_x, p.coupler_y]
+                vec![ax, ay, qx, qy, p.line_deg, p.crank, p.coupler, p.coupler_x, p.coupler_y]
             }
             CrankLinkage::InvertedSliderCrank(linkage) => {
                 let p = linkage.parameters();
                 let ([ax, ay], [bx, by]) = (p.crank_pivot, p.block_pivot);
-                [ax, ay, bx, by, p.crank, p.offset, p.coupler_x, p.coupler_y, 0.0]
+                vec![ax, ay, bx, by, p.crank, p.offset, p.coupler_x, p.coupler_y]
             }
+            CrankLinkage::MultiLoop(linkage) => linkage.numbers(),
         }
     }
 
@@ -374,13 +430,20 @@ impl CrankLinkage {
                     ..own
                 })?)
             }
+            CrankLinkage::MultiLoop(linkage) => {
+                CrankLinkage::MultiLoop(linkage.carried(mirrors, turn, shift)?)
+            }
         })
     }
 
-    /// Returns the assembly that an assembly becomes in the image: a four-bar's mirror image has the other one, a slider's
-    /// the same.
+    /// Returns the assembly that an assembly becomes in the image: the mirror image of a four-bar and of a six-bar has the
+    /// other one, a slider's the same.
     pub fn carried_assembly(&self, mirrors: bool, assembly: AssemblyMode) -> AssemblyMode {
-        if mirrors && self.four_bar().is_some() { assembly.opposite() } else { assembly }
+        if mirrors && (self.four_bar().is_some() || self.multi_loop().is_some()) {
+            assembly.opposite()
+        } else {
+            assembly
+        }
     }
 
     /// Returns the linkage moved by the vector `by`.
@@ -393,6 +456,9 @@ impl CrankLinkage {
             CrankLinkage::SliderCrank(linkage) => CrankLinkage::SliderCrank(linkage.shifted(by)?),
             CrankLinkage::InvertedSliderCrank(linkage) => {
                 CrankLinkage::InvertedSliderCrank(linkage.shifted(by)?)
+            }
+            CrankLinkage::MultiLoop(linkage) => {
+                CrankLinkage::MultiLoop(linkage.carried(false, Complex::new(1.0, 0.0), by)?)
             }
         })
     }
@@ -408,6 +474,7 @@ impl CrankLinkage {
             CrankLinkage::InvertedSliderCrank(linkage) => {
                 CrankLinkage::InvertedSliderCrank(linkage.scaled(factor)?)
             }
+            CrankLinkage::MultiLoop(linkage) => CrankLinkage::MultiLoop(linkage.scaled(factor)?),
         })
     }
 }
@@ -422,6 +489,7 @@ impl SingleLoop for CrankLinkage {
             CrankLinkage::InvertedSliderCrank(linkage) => {
                 CrankLinkage::InvertedSliderCrank(SliderLinkage::with_assembly(linkage, assembly))
             }
+            CrankLinkage::MultiLoop(linkage) => CrankLinkage::MultiLoop(linkage.with_assembly(assembly)),
         }
     }
 
@@ -430,6 +498,7 @@ impl SingleLoop for CrankLinkage {
             CrankLinkage::FourBar(linkage) => linkage.assembly(),
             CrankLinkage::SliderCrank(linkage) => SliderLinkage::assembly(linkage),
             CrankLinkage::InvertedSliderCrank(linkage) => SliderLinkage::assembly(linkage),
+            CrankLinkage::MultiLoop(linkage) => linkage.assembly(),
         }
     }
 
@@ -438,6 +507,7 @@ impl SingleLoop for CrankLinkage {
             CrankLinkage::FourBar(linkage) => linkage.coupler_point_with(crank_angle, assembly),
             CrankLinkage::SliderCrank(linkage) => linkage.coupler_point_with(crank_angle, assembly),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.coupler_point_with(crank_angle, assembly),
+            CrankLinkage::MultiLoop(linkage) => linkage.with_assembly(assembly).point_at(crank_angle),
         }
     }
 
@@ -446,6 +516,7 @@ impl SingleLoop for CrankLinkage {
             CrankLinkage::FourBar(linkage) => linkage.arc_of(crank_angle, assembly),
             CrankLinkage::SliderCrank(linkage) => linkage.arc_of(crank_angle, assembly),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.arc_of(crank_angle, assembly),
+            CrankLinkage::MultiLoop(_) => None,
         }
     }
 }
@@ -476,6 +547,7 @@ impl OnCircuit<CrankLinkage> {
             }
             CrankLinkage::SliderCrank(linkage) => self.of_slider(linkage, [low, high]),
             CrankLinkage::InvertedSliderCrank(linkage) => self.of_slider(linkage, [low, high]),
+            CrankLinkage::MultiLoop(linkage) => linkage.transmission_between([low, high]),
         }
     }
 
@@ -521,6 +593,12 @@ impl From<InvertedSliderCrank> for CrankLinkage {
     }
 }
 
+impl From<MultiLoop> for CrankLinkage {
+    fn from(linkage: MultiLoop) -> Self {
+        CrankLinkage::MultiLoop(linkage)
+    }
+}
+
 impl From<&CrankLinkage> for CrankLinkage {
     fn from(linkage: &CrankLinkage) -> Self {
         *linkage
@@ -533,6 +611,7 @@ impl From<CrankLinkage> for super::Linkage {
             CrankLinkage::FourBar(linkage) => super::Linkage::FourBar(linkage),
             CrankLinkage::SliderCrank(linkage) => super::Linkage::SliderCrank(linkage),
             CrankLinkage::InvertedSliderCrank(linkage) => super::Linkage::InvertedSliderCrank(linkage),
+            CrankLinkage::MultiLoop(linkage) => super::Linkage::MultiLoop(Box::new(linkage)),
         }
     }
 }
@@ -543,6 +622,7 @@ impl std::fmt::Display for CrankLinkage {
             CrankLinkage::FourBar(linkage) => linkage.fmt(f),
             CrankLinkage::SliderCrank(linkage) => linkage.fmt(f),
             CrankLinkage::InvertedSliderCrank(linkage) => linkage.fmt(f),
+            CrankLinkage::MultiLoop(linkage) => linkage.fmt(f),
         }
     }
 }

@@ -54,7 +54,7 @@ impl DyadChainKind {
     ];
 
     /// Creates a kind from at most [`MAX_DYADS`] pairs of anchors.
-    const fn of(anchors: &[[usize; 2]], traced: usize) -> Self {
+    pub(crate) const fn of(anchors: &[[usize; 2]], traced: usize) -> Self {
         let mut all = [[0; 2]; MAX_DYADS];
         let mut dyad = 0;
         while dyad < anchors.len() {

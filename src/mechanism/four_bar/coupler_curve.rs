@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 /// Default number of samples of a full circuit: 0.5 degrees apart.
 pub const DEFAULT_SAMPLES: usize = 720;
 
-/// A linkage of one loop that a crank drives, as far as its coupler curve asks.
+/// A linkage that a crank drives, as far as its coupler curve asks.
 pub trait SingleLoop: Copy {
     /// Returns the same linkage with the given sign of the closure's root.
     #[must_use]

@@ -1,10 +1,12 @@
 //! The plates that a kind of linkage has: its links, their holes and slots, the pins that join them, and how far they move.
 //!
 //! Every linkage of one loop is a ring of four links, each joined to the next. A new kind is a file beside this one that
-//! implements [`Kind`], and an arm of [`kind_of`].
+//! implements [`Kind`], and an arm of [`Plated`].
 
 use super::{Guide, Joint, Link, Pin, Placement, Reach, Sizes, Stretch};
-use crate::mechanism::{Complex, CrankLinkage, LoopJoints, nearest_share};
+use crate::mechanism::{
+    Complex, CrankLinkage, FourBar, InvertedSliderCrank, LoopJoints, SliderCrank, nearest_share,
+};
 
 /// A slot of a plate, as the line between the centres of its round ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,11 +79,31 @@ pub(super) trait Kind {
     fn reach(&self, stretch: &Stretch, at: &LoopJoints) -> Reach;
 }
 
-/// Returns a linkage as the plates of its kind.
-pub(super) fn kind_of(linkage: &CrankLinkage) -> &dyn Kind {
-    match linkage {
-        CrankLinkage::FourBar(linkage) => linkage,
-        CrankLinkage::SliderCrank(linkage) => linkage,
-        CrankLinkage::InvertedSliderCrank(linkage) => linkage,
+/// A linkage that has plates: one of a single loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Plated {
+    FourBar(FourBar),
+    SliderCrank(SliderCrank),
+    InvertedSliderCrank(InvertedSliderCrank),
+}
+
+impl Plated {
+    /// Returns a linkage as one that has plates; `None` of several loops.
+    pub(super) fn of(linkage: &CrankLinkage) -> Option<Plated> {
+        Some(match *linkage {
+            CrankLinkage::FourBar(linkage) => Plated::FourBar(linkage),
+            CrankLinkage::SliderCrank(linkage) => Plated::SliderCrank(linkage),
+            CrankLinkage::InvertedSliderCrank(linkage) => Plated::InvertedSliderCrank(linkage),
+            CrankLinkage::MultiLoop(_) => return None,
+        })
+    }
+
+    /// Returns it as the plates of its kind.
+    pub(super) fn kind(&self) -> &dyn Kind {
+        match self {
+            Plated::FourBar(linkage) => linkage,
+            Plated::SliderCrank(linkage) => linkage,
+            Plated::InvertedSliderCrank(linkage) => linkage,
+        }
     }
 }

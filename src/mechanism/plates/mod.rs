@@ -271,9 +271,13 @@ impl Plate {
         distinct
     }
 
-    /// Returns the placement of the plate at a position of the linkage.
-    pub fn placement(&self, linkage: impl Into<CrankLinkage>, joints: impl Into<LoopJoints>) -> Placement {
-        kind::kind_of(&linkage.into()).placement(self.link, &joints.into())
+    /// Returns the placement of the plate at a position of the linkage; `None` of one of several loops, which has no such plate.
+    pub fn placement(
+        &self,
+        linkage: impl Into<CrankLinkage>,
+        joints: impl Into<LoopJoints>,
+    ) -> Option<Placement> {
+        Some(kind::Plated::of(&linkage.into())?.kind().placement(self.link, &joints.into()))
     }
 
     /// Computes the signed distance between two placed plates, below zero if they overlap (then its size is the least

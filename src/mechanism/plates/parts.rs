@@ -1,6 +1,6 @@
 //! All parts of a linkage: its plates with their holes and slots, its pins, and where they lie in a position.
 
-use super::kind::kind_of;
+use super::kind::Plated;
 use super::{Guide, Joint, Link, Pin, Placement, Plate, Reach, Sizes, Slot, Stretch};
 use crate::mechanism::{Complex, CrankLinkage, LoopJoints};
 use std::f64::consts::TAU;
@@ -12,24 +12,26 @@ const HALVINGS: usize = 60;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parts {
     linkage: CrankLinkage,
+    plated: Plated,
     guide: Option<Guide>,
 }
 
 impl Parts {
     /// Returns the parts of a linkage for a motion; the slot of a crank that turns fully is long enough for the whole turn.
-    /// `None` if a slider's loop is open in the motion.
+    /// `None` if a slider's loop is open in the motion, and of a linkage of several loops.
     pub fn new(linkage: impl Into<CrankLinkage>, sizes: Sizes, motion: &[Stretch]) -> Option<Self> {
         let linkage = linkage.into();
-        let kind = kind_of(&linkage);
+        let plated = Plated::of(&linkage)?;
+        let kind = plated.kind();
         if !kind.links().contains(&Link::Block) {
-            return Some(Parts { linkage, guide: None });
+            return Some(Parts { linkage, plated, guide: None });
         }
         let motion: Vec<Stretch> = match linkage.mobility().input_turns_fully() {
             true => motion.iter().map(|stretch| Stretch { from: 0.0, to: TAU, ..*stretch }).collect(),
             false => motion.to_vec(),
         };
         let guide = Some(kind.guide(sizes, &motion)?);
-        Some(Parts { linkage, guide })
+        Some(Parts { linkage, plated, guide })
     }
 
     /// Returns the linkage.
@@ -39,17 +41,17 @@ impl Parts {
 
     /// Returns the links around the loop, in the order of drawings and lists: ground, crank, coupler, and the fourth.
     pub fn links(&self) -> [Link; 4] {
-        kind_of(&self.linkage).links()
+        self.plated.kind().links()
     }
 
     /// Returns the pins.
     pub fn pins(&self) -> &'static [Pin] {
-        kind_of(&self.linkage).pins()
+        self.plated.kind().pins()
     }
 
     /// Returns whether a pin always lies in the slot of a link, so that it may stand through it.
     pub fn stands_in_slot(&self, pin: Joint, link: Link) -> bool {
-        self.slot().is_some_and(|slot| slot.link == link) && kind_of(&self.linkage).in_slot() == Some(pin)
+        self.slot().is_some_and(|slot| slot.link == link) && self.plated.kind().in_slot() == Some(pin)
     }
 
     /// Returns the guide of the slider; `None` of a four-bar.
@@ -59,13 +61,13 @@ impl Parts {
 
     /// Returns the slot that the block runs in; `None` of a four-bar.
     pub fn slot(&self) -> Option<Slot> {
-        let kind = kind_of(&self.linkage);
+        let kind = self.plated.kind();
         self.links().into_iter().find_map(|link| kind.shape(link, self.guide.as_ref()).slot)
     }
 
     /// Builds the plate of a link.
     pub fn plate(&self, link: Link, radius: f64) -> Plate {
-        Plate::shaped(link, kind_of(&self.linkage).shape(link, self.guide.as_ref()), radius)
+        Plate::shaped(link, self.plated.kind().shape(link, self.guide.as_ref()), radius)
     }
 
     /// Builds the plates of all links, in their order.
@@ -75,7 +77,7 @@ impl Parts {
 
     /// Returns the frame of a link at a position.
     pub fn placement(&self, link: Link, at: &LoopJoints) -> Placement {
-        kind_of(&self.linkage).placement(link, at)
+        self.plated.kind().placement(link, at)
     }
 
     /// Returns the place of a joint at a position.
@@ -106,20 +108,21 @@ impl Parts {
     }
 }
 
-/// Returns the joints whose distances over the motion matter, the coupler point among them.
+/// Returns the joints whose distances over the motion matter, the coupler point among them; none of a linkage of several loops.
 pub(crate) fn points(linkage: &CrankLinkage) -> &'static [Joint] {
-    kind_of(linkage).points()
+    Plated::of(linkage).map_or(&[], |plated| plated.kind().points())
 }
 
-/// Returns the pins of a linkage.
+/// Returns the pins of a linkage; none of one of several loops.
 pub(crate) fn pins(linkage: &CrankLinkage) -> &'static [Pin] {
-    kind_of(linkage).pins()
+    Plated::of(linkage).map_or(&[], |plated| plated.kind().pins())
 }
 
-/// Computes how far joints move within a stretch, from the position in its middle; `None` if the loop is open there.
+/// Computes how far joints move within a stretch, from the position in its middle; `None` if the loop is open there, and of a
+/// linkage of several loops.
 pub(crate) fn reach(linkage: &CrankLinkage, stretch: &Stretch) -> Option<(LoopJoints, Reach)> {
     let at = linkage.joints_with(stretch.middle(), stretch.assembly)?;
-    Some((at, kind_of(linkage).reach(stretch, &at)))
+    Some((at, Plated::of(linkage)?.kind().reach(stretch, &at)))
 }
 
 /// Returns the place of a joint at a position; `None` of a guide pin, which depends on the block.

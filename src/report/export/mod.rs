@@ -121,7 +121,7 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
                         all_configurations,
                     }))
                 }
-                CrankLinkage::SliderCrank(_) | CrankLinkage::InvertedSliderCrank(_) => {
+                _ => {
                     let linkage = linkage.into();
                     let request = MechanismRequest { name, unit, linkage, crank_deg, input };
                     mechanism_csv(&analyze_mechanism(&request))

@@ -60,6 +60,9 @@ fn arms(at: Complex, angle: f64, length: f64) -> Arms {
 
 impl<'a> Model<'a> {
     pub(super) fn new(subject: &'a Subject, settings: &'a Settings) -> Result<Self, Refusal> {
+        if subject.linkage.multi_loop().is_some() {
+            return Err(Refusal::without_plates());
+        }
         let mut assumed = Vec::new();
         let unit = unit_of(subject, settings)?;
         if unit.is_none() {

@@ -47,7 +47,7 @@ impl Skeleton {
             block: block(model, at),
         };
         match model.linkage {
-            CrankLinkage::FourBar(_) => plain,
+            CrankLinkage::FourBar(_) | CrankLinkage::MultiLoop(_) => plain,
             CrankLinkage::SliderCrank(_) => Skeleton { line: line(model, at, None), ..plain },
             CrankLinkage::InvertedSliderCrank(_) => Skeleton {
                 joints: plain.joints.into_iter().filter(|(name, _)| *name != "D").collect(),

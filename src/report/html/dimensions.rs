@@ -5,11 +5,13 @@ use super::page::paragraph;
 use super::table::minus;
 use crate::files::linkage_file::any_to_toml;
 use crate::mechanism::Unit;
-use crate::mechanism::{CrankLinkage, LinkageKind};
+use crate::mechanism::four_bar::transmission::TransmissionExtremes;
+use crate::mechanism::{CrankLinkage, LinkageKind, MultiLoop};
 use crate::record::{Candidate, Record};
 use crate::report::text::{clean, significant};
 use crate::report::{output, words};
 use maud::{Markup, html};
+use std::f64::consts::TAU;
 
 /// The largest number of characters of a name in a linkage file.
 const MOST_NAME: usize = 50;
@@ -30,6 +32,7 @@ pub(super) fn dimensions(record: &Record, c: &Candidate, short: &str) -> Markup 
         LinkageKind::InvertedSliderCrank => {
             format!("Ground AB {ground}{unit}; {place} from C, along the rod (positive: to the left).")
         }
+        LinkageKind::SixBar | LinkageKind::EightBar => several_loops(c, &unit),
     };
     let body = c.frame_deg.map(|frame_deg| {
         format!(
@@ -61,6 +64,27 @@ pub(super) fn of_alternatives(c: &Candidate) -> Markup {
             }
         }
     }
+}
+
+/// Returns the kind of a linkage of several loops and the least transmission angle of each of its dyads.
+fn several_loops(c: &Candidate, unit: &str) -> String {
+    let Some(linkage) = c.linkage.multi_loop() else { return String::new() };
+    let longest = significant(linkage.longest(), 5);
+    format!(
+        "{}. Longest distance of two joints of one link {longest}{unit}. Transmission angles: {}.",
+        linkage.chain_kind().name(),
+        transmissions(linkage)
+    )
+}
+
+/// Returns the least distance from flat of the transmission angle of each dyad over the turn: `41.2° at D, 33.0° at F2`.
+fn transmissions(linkage: &MultiLoop) -> String {
+    let joints = ["D", "F2", "F3"];
+    let all = linkage.transmissions_between([0.0, TAU]);
+    let of = |(extremes, joint): (&TransmissionExtremes, &str)| {
+        format!("{}° at {joint}", significant(extremes.worst().to_degrees(), 3))
+    };
+    all.iter().zip(joints).map(of).collect::<Vec<_>>().join(", ")
 }
 
 fn block(name: &str, unit: Option<Unit>, linkage: &CrankLinkage) -> Markup {

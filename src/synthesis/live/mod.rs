@@ -13,7 +13,7 @@ use crate::judge::loosen::judged_under;
 use crate::judge::rank::{compare, distinct, distinct_places};
 use crate::judge::warm::start_at;
 use crate::mechanism::CrankLinkage;
-use crate::record::Candidate;
+use crate::record::{Assemblies, Candidate};
 use crate::synthesis::constants::live::{EFFORT, EVALUATIONS, FIRST_LOOK, FOLLOWING};
 use crate::synthesis::multistart::{judged, polish};
 use crate::synthesis::nearest::nearest_positions;
@@ -148,6 +148,7 @@ fn placed(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
         return Some(candidate.clone());
     }
     let (crank_deg, t1_at) = nearest_positions(problem, candidate.linkage)?;
+    let t1_at = Assemblies::of(&candidate.linkage, t1_at);
     Some(Candidate { crank_deg, t1_at, ..candidate.clone() })
 }
 

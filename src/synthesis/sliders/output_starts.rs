@@ -115,9 +115,7 @@ impl Placing {
         let pivot = Complex::new(middle(0), middle(1));
         let ground = match kind {
             LinkageKind::SliderCrank => Complex::from_polar(1.0, middle(5)),
-            LinkageKind::FourBar | LinkageKind::InvertedSliderCrank => {
-                Complex::new(middle(3), middle(4)) - pivot
-            }
+            _ => Complex::new(middle(3), middle(4)) - pivot,
         };
         let is_fixed = |k: usize| limits.bounds[k].0 == limits.bounds[k].1;
         let is_ground_given = kind == LinkageKind::InvertedSliderCrank && is_fixed(3) && is_fixed(4);

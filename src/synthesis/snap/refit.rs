@@ -243,7 +243,7 @@ fn slider_to_the_digit(linkage: &CrankLinkage, fixed: &Fixed) -> Option<CrankLin
     let (crank, assembly) = (fixed.get(Length::A).unwrap_or(linkage.crank()), linkage.assembly());
     let pivot = fixed.crank_pivot.map_or(linkage.crank_pivot(), point);
     match linkage {
-        CrankLinkage::FourBar(_) => None,
+        CrankLinkage::FourBar(_) | CrankLinkage::MultiLoop(_) => None,
         CrankLinkage::SliderCrank(l) => {
             let coupler = fixed.get(Length::B).unwrap_or(l.coupler());
             let line = (l.line_point(), l.line_direction().arg());

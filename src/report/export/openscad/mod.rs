@@ -39,6 +39,7 @@ pub(super) fn script(model: &Model<'_>) -> Result<String, Refusal> {
         CrankLinkage::FourBar(linkage) => four_bar::script(linkage),
         CrankLinkage::SliderCrank(linkage) => sliders::slider_crank(linkage, parts),
         CrankLinkage::InvertedSliderCrank(linkage) => sliders::inverted_slider_crank(linkage, parts),
+        CrankLinkage::MultiLoop(_) => return Err(Refusal::without_plates()),
     };
     let common = [
         ("hole", model.holes.pins, "diameter of the holes"),

@@ -109,7 +109,7 @@ impl Limited {
         (bounds[0], bounds[1]) = (pivot(*crank_pivot, 0), pivot(*crank_pivot, 1));
         bounds[2] = length(a);
         match kind {
-            LinkageKind::FourBar => {}
+            LinkageKind::FourBar | LinkageKind::SixBar | LinkageKind::EightBar => {}
             LinkageKind::SliderCrank => {
                 bounds[3] = length(b);
                 bounds[4] = (-DEFAULT_REACH, DEFAULT_REACH);

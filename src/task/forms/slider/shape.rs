@@ -70,7 +70,7 @@ impl SliderShape {
     pub fn of(kind: LinkageKind, x: &Unknowns) -> Option<SliderShape> {
         let [ax, ay, crank, one, two, three, zx, zy, ..] = *x;
         let closure = match kind {
-            LinkageKind::FourBar => return None,
+            LinkageKind::FourBar | LinkageKind::SixBar | LinkageKind::EightBar => return None,
             LinkageKind::SliderCrank => {
                 Closure::Line { coupler: one, height: two, direction: Complex::from_polar(1.0, three) }
             }
@@ -90,7 +90,7 @@ impl SliderShape {
     /// Returns a linkage in its unknowns; `None` of a four-bar.
     pub fn from_linkage(linkage: &CrankLinkage) -> Option<SliderShape> {
         let closure = match linkage {
-            CrankLinkage::FourBar(_) => return None,
+            CrankLinkage::FourBar(_) | CrankLinkage::MultiLoop(_) => return None,
             CrankLinkage::SliderCrank(l) => Closure::Line {
                 coupler: l.coupler(),
                 height: cross(l.line_direction(), l.line_point()),
