@@ -155,7 +155,9 @@ fn shapes(options: &Options) {
             transmission_min: 30_f64.to_radians(),
             longest_max: 3.0 * diagonal(&points),
             link_ratio_max: 100.0,
-            pivots_in: None,
+            pivots_in: [None; 3],
+            footprint_in: None,
+            extent_max: f64::INFINITY,
         };
         let (mut errors, mut evaluations) = (Vec::new(), Vec::new());
         for seed in 1..=options.seeds {
@@ -163,6 +165,7 @@ fn shapes(options: &Options) {
                 points: &points,
                 closed: *closed,
                 kinds: &kinds,
+                counter_clockwise: false,
                 limits,
                 seed,
                 evaluations: u64::MAX,
@@ -259,11 +262,14 @@ fn random(options: &Options) {
             points: &points,
             closed: true,
             kinds: &DyadChainKind::SIX_BARS,
+            counter_clockwise: false,
             limits: DyadChainLimits {
                 transmission_min: 10_f64.to_radians(),
                 longest_max: 20.0 * diagonal(&points).max(chain.longest() / 19.0),
                 link_ratio_max: 100.0,
-                pivots_in: None,
+                pivots_in: [None; 3],
+                footprint_in: None,
+                extent_max: f64::INFINITY,
             },
             seed: 1,
             evaluations: u64::MAX,

@@ -109,7 +109,7 @@ fn drawn(kind: LinkageKind, draws: &mut Stream) -> Option<CrankLinkage> {
     let (pivot, offset) = (place(draws, 2.0), place(draws, 4.0));
     let crank = uniform(draws, 0.3, 2.0);
     let linkage = match kind {
-        LinkageKind::FourBar => {
+        LinkageKind::FourBar | LinkageKind::SixBar | LinkageKind::EightBar => {
             let ground = turn * uniform(draws, 1.0, 4.0);
             let (coupler, follower) = (uniform(draws, 1.0, 4.0), uniform(draws, 1.0, 4.0));
             let links = [crank, coupler, follower];
@@ -169,7 +169,7 @@ fn generates_within_bounds(linkage: &CrankLinkage, of: Points, outputs: &[f64]) 
         CrankLinkage::SliderCrank(l) => {
             ((l.line_point() - linkage.crank_pivot()) * l.line_direction().conj()).im
         }
-        CrankLinkage::FourBar(_) => 0.0,
+        CrankLinkage::FourBar(_) | CrankLinkage::MultiLoop(_) => 0.0,
     };
     // Outputs are wrapped to half a turn.
     let turns = of == Points::Angles && outputs.windows(2).any(|w| (w[1] - w[0]).abs() > 180.0);

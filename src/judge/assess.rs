@@ -277,8 +277,13 @@ fn design_rows(problem: &Problem, linkage: &CrankLinkage) -> Vec<Requirement> {
         ("design.coupler_x", Some(offset.re)),
         ("design.coupler_y", Some(offset.im)),
     ];
+    // Of several loops the fixed pivots A and B alone are bounded.
+    let bounds = |name: &str| {
+        linkage.multi_loop().is_none()
+            || matches!(name, "design.Ax" | "design.Ay" | "design.Bx" | "design.By")
+    };
     let row = |(name, value): (&str, Option<f64>)| {
-        let value = value?;
+        let value = value.filter(|_| bounds(name))?;
         let Limits(low, high) = design_limits(&problem.spec().design, name)?;
         let value = match name {
             // A line has no sense.

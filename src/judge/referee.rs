@@ -19,7 +19,7 @@ use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::{step_along, wrapped};
 use crate::mechanism::four_bar::transmission::TransmissionExtremes;
 use crate::mechanism::{
-    AssemblyMode, Complex, CrankLinkage, InputArc, Joints, OnCircuit, bounding_box, least_and_greatest,
+    AssemblyMode, Complex, CrankLinkage, InputArc, OnCircuit, bounding_box, least_and_greatest,
 };
 use crate::task::Defect;
 use crate::task::defect::ORDER_TOLERANCE;
@@ -242,25 +242,25 @@ impl UsedMotion {
         self.on.transmission_between(self.range)
     }
 
-    /// Returns [xmin, ymin, xmax, ymax] of A, B, C, D and P over the motion: dense samples, each extreme refined by
+    /// Returns [xmin, ymin, xmax, ymax] of all joints and P over the motion: dense samples, each extreme refined by
     /// ternary search around its sample.
     pub fn footprint(&self) -> [f64; 4] {
         const SAMPLES: usize = 720;
-        let joints_of = |j: &Joints| [j.crank_pin, j.follower_pin, j.coupler_point];
         let mut reached: Vec<Complex> = self.on.linkage.pivots().collect();
         let step = (self.range[1] - self.range[0]) / SAMPLES as f64;
         // Each sample once, for all joints and directions.
         let [low, high] = self.range;
-        let sampled: Vec<Option<Joints>> =
-            (0..=SAMPLES).map(|i| self.on.joints_at(self.blend(i, SAMPLES).clamp(low, high))).collect();
-        for joint in 0..3 {
+        let sampled: Vec<Option<Vec<Complex>>> =
+            (0..=SAMPLES).map(|i| self.on.moving_at(self.blend(i, SAMPLES).clamp(low, high))).collect();
+        let count = sampled.iter().flatten().map(Vec::len).next().unwrap_or(0);
+        for joint in 0..count {
             for direction in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
-                let toward = |joints: &Joints| {
-                    let p = joints_of(joints)[joint];
+                let toward = |joints: &Vec<Complex>| {
+                    let p = joints[joint];
                     direction.0 * p.re + direction.1 * p.im
                 };
                 let reach = |t: f64| {
-                    let joints = self.on.joints_at(t.clamp(self.range[0], self.range[1]));
+                    let joints = self.on.moving_at(t.clamp(self.range[0], self.range[1]));
                     joints.as_ref().map_or(f64::NEG_INFINITY, toward)
                 };
                 // Of equal ones the last is taken.
@@ -279,7 +279,7 @@ impl UsedMotion {
                     }
                 }
                 let ends = [best, (0.5 * (low + high)).clamp(self.range[0], self.range[1])];
-                reached.extend(ends.iter().filter_map(|t| Some(joints_of(&self.on.joints_at(*t)?)[joint])));
+                reached.extend(ends.iter().filter_map(|t| Some(self.on.moving_at(*t)?[joint])));
             }
         }
         let [low, high] = bounding_box(reached.into_iter());

@@ -7,6 +7,7 @@ use super::canvas::{
 };
 use super::guide::Sliding;
 use super::labels::Beside;
+use super::loops::Loops;
 use super::parts::{UP, away, bars, letter, mark_joints, point_mark, stand, triangle};
 use super::scene::{Bounds, Scene, Target};
 use super::words::joined;
@@ -49,7 +50,15 @@ const MARKED: usize = 150;
 
 /// Draws the scene; labels avoid the marked places, and the drawn parts are marked for later labels.
 pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
-    let joints = scene.pose.filter(|_| detail.linkage).map(|pose| pose.joints.map(|p| view.spot(p)));
+    let loops = Loops::of(scene).filter(|_| detail.linkage);
+    let is_one_loop = loops.is_none() && detail.linkage;
+    let joints = scene.pose.filter(|_| is_one_loop).map(|pose| pose.joints.map(|p| view.spot(p)));
+    if let Some(loops) = &loops {
+        loops.ground(canvas, view, detail.weight);
+        loops.pin_paths(canvas, view, detail.weight);
+        loops.mark(canvas, view);
+        loops.links(canvas, view, detail.weight);
+    }
     let guide = scene.pose.filter(|_| detail.linkage).and_then(|pose| Sliding::of(scene, &pose));
     if let Some(joints) = joints {
         let [a, b, c, d, p] = joints;
@@ -83,6 +92,9 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Deta
         if detail.letters {
             letters(canvas, joints, scene.has_two_pivots());
         }
+    }
+    if let Some(loops) = &loops {
+        loops.marks(canvas, view, detail.weight, detail.letters);
     }
     if detail.numbers {
         numbers(canvas, scene, view, marks.radius);

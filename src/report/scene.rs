@@ -1,7 +1,7 @@
 //! The scene of a candidate's drawing: target points, the circuits used, and one position of the linkage.
 
 use super::guide::Sliding;
-use super::{body, function};
+use super::{body, function, loops};
 use crate::mechanism::{
     AssemblyMode, Complex, CouplerCurve, CrankLinkage, Joints, LoopJoints, MAX_MAGNITUDE, dot, point,
 };
@@ -108,6 +108,8 @@ impl Scene {
         let pivots = self.linkage.iter().flat_map(CrankLinkage::pivots);
         let pins = self.circuits.iter().flatten().flat_map(|joints| [joints.crank_pin, joints.follower_pin]);
         pivots.chain(pins).for_each(|p| bounds.hold(p));
+        let several = self.linkage.as_ref().and_then(CrankLinkage::multi_loop);
+        several.iter().flat_map(|linkage| loops::paths(linkage)).flatten().for_each(|p| bounds.hold(p));
         if let Some(sliding) = self.pose.as_ref().and_then(|pose| Sliding::of(self, pose)) {
             sliding.ends().into_iter().for_each(|p| bounds.hold(p));
         }

@@ -58,6 +58,8 @@ pub fn explain(context: Context<'_>, outcome: &mut SearchOutcome) -> Result<Expl
     let problem = context.problem;
     // All exact linkages are known, each with the requirements that it does not meet.
     let listed = problem.spec().solve.method == Method::Continuation;
+    // A short search for six-bars says little about what they could do.
+    let listed = listed || problem.spec().design.searches_several_loops();
     if listed || context.stopped() || outcome.candidates.iter().any(|c| c.accepted) {
         return Ok(Explained::default());
     }

@@ -14,7 +14,7 @@ use super::multistart::{LONG_FIT, fit_and_judge, polish};
 use super::polish::{improve, reserve};
 use super::population::{self, Population};
 use super::sliders::Sliders;
-use super::{Context, Progress, SearchOutcome, continuation, local, relaxed};
+use super::{Context, Progress, SearchOutcome, continuation, local, relaxed, several_loops};
 use crate::judge::assess::{assess, assess_again};
 use crate::judge::rank::{divided, exact_cost, searched};
 use crate::mechanism::{Complex, LinkageKind};
@@ -52,6 +52,64 @@ pub fn search(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
 /// # Errors
 /// As [`search`].
 pub fn approximate(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
+    let design = &context.problem.spec().design;
+    let several: Vec<LinkageKind> =
+        design.mechanism.iter().copied().filter(|kind| kind.dyads().is_some()).collect();
+    if several.is_empty() {
+        return one_loop(context);
+    }
+    let simple: Vec<LinkageKind> =
+        design.mechanism.iter().copied().filter(|kind| kind.dyads().is_none()).collect();
+    simple_first(context, simple, &several)
+}
+
+/// Searches for linkages of one loop, then for six-bars and eight-bars, each kind with an equal share of the evaluations that are
+/// left. Where a tolerance is asked for, a kind is searched for only if none before it has an accepted answer.
+fn simple_first(
+    context: Context<'_>,
+    simple: Vec<LinkageKind>,
+    several: &[LinkageKind],
+) -> Result<SearchOutcome, PopulationError> {
+    let problem = context.problem;
+    let limit = problem.spec().solve.evaluations;
+    let mut found = Found::nothing();
+    if !simple.is_empty() {
+        let mut spec = problem.spec().clone();
+        spec.design.mechanism = simple;
+        spec.solve.evaluations = (limit / (1 + several.len() as u64)).max(1);
+        if let Ok(within) = problem.with(spec) {
+            let one = one_loop(context.of(&within))?;
+            found = Found {
+                candidates: one.candidates.into_iter().chain(one.others).collect(),
+                evaluations: one.evaluations,
+                reason: one.reason,
+                used: one.used,
+                repeats: one.repeats,
+            };
+        }
+    }
+    for (i, kind) in several.iter().enumerate() {
+        let left = limit.saturating_sub(found.evaluations.objective) / (several.len() - i) as u64;
+        let is_enough = problem.spec().task.tolerance.is_some() && found.has_accepted();
+        if is_enough || is_exact(problem, &found.candidates) || context.stopped() || left == 0 {
+            break;
+        }
+        let best = |found: &Found| {
+            let accepted = found.candidates.iter().filter(|c| c.accepted);
+            accepted.map(|c| searched(problem, c)).min_by(f64::total_cmp).unwrap_or(f64::INFINITY)
+        };
+        let before = (best(&found), found.repeats, found.reason);
+        found.add(several_loops::search_for(context, *kind, left));
+        // The repeats are those of the best answer.
+        if before.0 < f64::INFINITY && best(&found) >= before.0 {
+            (found.repeats, found.reason) = (before.1, before.2);
+        }
+    }
+    Ok(ranked(context, found))
+}
+
+/// Searches for linkages of one loop.
+fn one_loop(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
     let design = &context.problem.spec().design;
     if design.is_of_four_bars() {
         return four_bars(context);

@@ -5,7 +5,9 @@
 //! and the order of the fields are those of the checkpoint file.
 
 use super::belief::Belief;
+use super::dyad_chains::DyadChainState;
 use super::front::FrontState;
+use crate::mechanism::LinkageKind;
 use crate::numbers::optimise::argmin_bridge::RestartsState;
 use crate::numbers::optimise::exact_float::{self, Exact};
 use crate::record::{Candidate, Evaluations};
@@ -13,6 +15,7 @@ use crate::task::forms::design_space::Design;
 use crate::task::forms::start::Start;
 use crate::task::{Problem, Setting};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// The state of a search: the last saved boundary of each of its parts.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -33,6 +36,9 @@ pub struct SearchState {
     /// State of a search for linkages with a slider.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) sliders: Option<RepeatedState>,
+    /// States of the searches for six-bars and eight-bars.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) dyad_chains: BTreeMap<LinkageKind, DyadChainState>,
     /// State of a population search.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) population: Option<RestartsState>,

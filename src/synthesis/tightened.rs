@@ -131,6 +131,9 @@ pub(super) fn fitted(
         return out;
     }
     let within = context.of(tight).silent();
+    if from.linkage.multi_loop().is_some() {
+        return out;
+    }
     if from.linkage.kind() != LinkageKind::FourBar {
         let effort = (effort, evaluations.min(EVALUATIONS), enough);
         let (end, evaluations) = sliders::refit(within, from, effort);

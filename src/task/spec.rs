@@ -118,6 +118,11 @@ impl DesignSpec {
         if self.mechanism.is_empty() { kind == LinkageKind::FourBar } else { self.mechanism.contains(&kind) }
     }
 
+    /// Returns whether six-bars or eight-bars are searched for.
+    pub fn searches_several_loops(&self) -> bool {
+        self.mechanism.iter().any(|kind| kind.dyads().is_some())
+    }
+
     /// Returns whether four-bars alone are searched for.
     pub fn is_of_four_bars(&self) -> bool {
         self.mechanism.iter().all(|kind| *kind == LinkageKind::FourBar)

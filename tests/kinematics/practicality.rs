@@ -92,7 +92,7 @@ fn positions(sweep: &Sweep, n: usize) -> Vec<(f64, AssemblyMode, Joints)> {
 
 /// How far the outline of one plate stays from another plate at a position; 0 or less where it enters it.
 fn entered(l: &FourBar, points: &[Complex], plate: &Plate, other: &Plate, j: &Joints) -> f64 {
-    let at = plate.placement(l, j);
+    let at = plate.placement(l, j).expect("a four-bar");
     let hull = holes(l, other.link, j);
     points.iter().map(|p| to_hull(at.of(*p), &hull) - other.radius).fold(f64::INFINITY, f64::min)
 }

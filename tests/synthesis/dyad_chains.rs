@@ -36,7 +36,9 @@ fn limits(points: &[Complex]) -> DyadChainLimits {
         transmission_min: 30_f64.to_radians(),
         longest_max: 3.0 * extent(points).1,
         link_ratio_max: 100.0,
-        pivots_in: None,
+        pivots_in: [None; 3],
+        footprint_in: None,
+        extent_max: f64::INFINITY,
     }
 }
 
@@ -45,6 +47,7 @@ fn request<'a>(points: &'a [Complex], closed: bool, evaluations: u64) -> Request
         points,
         closed,
         kinds: &DyadChainKind::SIX_BARS,
+        counter_clockwise: false,
         limits: limits(points),
         seed: 1,
         evaluations,
@@ -215,7 +218,7 @@ fn a_search_that_is_stopped_at_once_has_an_answer_within_the_limits_or_none() {
 fn fixed_pivots_stay_in_their_box() {
     let points = shape("letter-D");
     let mut request = request(&points, true, 1);
-    request.limits.pivots_in = Some([Complex::new(-1.0, -2.0), Complex::new(2.5, 0.0)]);
+    request.limits.pivots_in = [Some([Complex::new(-1.0, -2.0), Complex::new(2.5, 0.0)]); 3];
     let found = found(&request);
     let best = &found.answers[0];
     assert!(best.accepted);

@@ -161,7 +161,7 @@ fn changed(linkage: &CrankLinkage, name: &str, by: f64, rail: [f64; 2]) -> Crank
             let made = InvertedSliderCrank::from_parts([pivot, l.block_pivot() + b], crank, h, offset, t1);
             CrankLinkage::InvertedSliderCrank(made.expect("a linkage"))
         }
-        CrankLinkage::FourBar(_) => unreachable!("no four-bar is drawn"),
+        CrankLinkage::FourBar(_) | CrankLinkage::MultiLoop(_) => unreachable!("no four-bar is drawn"),
     }
 }
 

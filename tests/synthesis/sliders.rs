@@ -76,7 +76,7 @@ fn assert_closed(candidate: &Candidate, targets: &[[f64; 2]], size: f64) {
                 near((arm * u.conj()).im, l.offset());
                 u
             }
-            CrankLinkage::FourBar(_) => panic!("not a four-bar"),
+            CrankLinkage::FourBar(_) | CrankLinkage::MultiLoop(_) => panic!("not a four-bar"),
         };
         let offset = candidate.linkage.coupler_offset();
         near((p - c - along * offset).norm(), 0.0);

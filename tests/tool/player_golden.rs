@@ -131,7 +131,7 @@ fn golden() -> Value {
     }
     let mut one_branch = rocking();
     one_branch.candidates[0].crank_deg.truncate(2);
-    one_branch.candidates[0].t1_at.truncate(2);
+    one_branch.candidates[0].t1_at = one_branch.candidates[0].t1_at[..2].to_vec().into();
     one_branch.problem.resolved.task.points.truncate(2);
     let records = [k18(), rocking(), one_branch, shapes(), detail()];
     json!({

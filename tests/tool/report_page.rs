@@ -77,7 +77,7 @@ fn five() -> Record {
             Alternative {
                 linkage: candidate.linkage,
                 crank_deg: candidate.crank_deg.clone(),
-                t1_at: candidate.t1_at.clone(),
+                t1_at: candidate.t1_at.to_vec(),
                 linkage_type: candidate.linkage_type,
                 accepted: false,
                 sum_sq: candidate.error.sum_sq,
@@ -118,7 +118,7 @@ fn with_exact(mut record: Record) -> Record {
         rank: 1,
         linkage: best.linkage,
         crank_deg: best.crank_deg,
-        t1_at: best.t1_at,
+        t1_at: best.t1_at.to_vec(),
         miss: 1e-15,
         linkage_type: best.linkage_type,
         defects: vec![Defect::Order { at: vec![3] }],

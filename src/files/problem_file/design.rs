@@ -9,6 +9,7 @@ use crate::task::Output;
 use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, Limits, RequireSpec, SolveSpec, TaskSpec};
 use crate::task::values::OneOrMore;
+use crate::task::without_several_loops::WithoutSeveralLoops;
 use crate::task::without_sliders::WithoutSliders;
 
 /// Two quantities that should agree may differ by this part of their scale: a person types few digits.
@@ -87,7 +88,8 @@ pub(super) fn of_kinds(
         };
         return toml.refuse("design.mechanism", format!("a {kind} has {}", output.missing()), help);
     }
-    let Some(slider) = kinds.iter().find(|kind| **kind != LinkageKind::FourBar) else { return Ok(()) };
+    of_several_loops(toml, raw, &kinds, (task, solve, require))?;
+    let Some(slider) = kinds.iter().find(|kind| kind.has_slider()) else { return Ok(()) };
     let Some(reason) = WithoutSliders::of(task, solve) else { return Ok(()) };
     let why = format!("\"{slider}\" {reason}");
     if raw.mechanism.is_none() {
@@ -98,6 +100,55 @@ pub(super) fn of_kinds(
         );
     }
     toml.refuse("design.mechanism", why, "write mechanism = \"four-bar\", or change what does not go with it")
+}
+
+/// Refuses six-bars and eight-bars where they are not searched for ([`WithoutSeveralLoops`]), and keys that bound nothing of theirs
+/// where no other kind is searched for.
+fn of_several_loops(
+    toml: &TomlText<'_>,
+    raw: &RawDesign,
+    kinds: &[LinkageKind],
+    (task, solve, require): (&TaskSpec, &SolveSpec, &RequireSpec),
+) -> Checked<()> {
+    let Some(kind) = kinds.iter().find(|kind| kind.dyads().is_some()) else { return Ok(()) };
+    if let Some(reason) = WithoutSeveralLoops::of(task, solve, require) {
+        let help = "leave it out of the list, or change what does not go with it";
+        return toml.refuse("design.mechanism", format!("\"{kind}\" {reason}"), help);
+    }
+    if kinds.iter().any(|kind| kind.dyads().is_none()) {
+        return Ok(());
+    }
+    if !require.types.is_empty() {
+        let message = format!("type is about four-bars, and a {kind} has none");
+        return toml.refuse("require.type", message, "remove it: the crank of every six-bar turns fully");
+    }
+    let bounds = [
+        ("a", raw.a.is_some()),
+        ("b", raw.b.is_some()),
+        ("c", raw.c.is_some()),
+        ("d", raw.d.is_some()),
+        ("e", raw.e.is_some()),
+        ("ground", raw.ground.is_some()),
+        ("ground_angle_deg", raw.ground_angle_deg.is_some()),
+        ("coupler_x", raw.coupler_x.is_some()),
+        ("coupler_y", raw.coupler_y.is_some()),
+    ];
+    if let Some((key, _)) = bounds.into_iter().find(|(_, given)| *given) {
+        let message = format!("{key} bounds nothing of a {kind}: A and B alone do");
+        let help = "remove it; longest_max and link_ratio_max in [require] bound all of its lengths";
+        return toml.refuse(&format!("design.{key}"), message, help);
+    }
+    for (key, pivot) in [("A", raw.crank_pivot), ("B", raw.follower_pivot)] {
+        if pivot.is_some_and(|pivot| pivot.0.iter().any(Limits::is_fixed)) {
+            let message = format!("{key} is fixed, and the pivots of a {kind} are searched for in boxes");
+            return toml.refuse(
+                &format!("design.{key}"),
+                message,
+                &format!("write {key} = [[xmin, xmax], [ymin, ymax]]"),
+            );
+        }
+    }
+    Ok(())
 }
 
 /// Refuses lengths that are no lengths and bounds that contradict one another.

@@ -1,7 +1,7 @@
 //! The regions that hold the pivots and the whole motion.
 
 use super::{Finding, Judged, at_least, at_most};
-use crate::mechanism::Complex;
+use crate::mechanism::{Complex, bounding_box};
 use crate::record::Figure;
 use crate::task::region::Region;
 use std::f64::consts::TAU;
@@ -14,8 +14,7 @@ fn inside(held: [f64; 4], limit: [f64; 4]) -> Finding {
 pub(super) fn pivots(judged: &Judged<'_>) -> Option<Finding> {
     let linkage = &judged.candidate.linkage;
     let region = judged.require().pivots_in.as_ref()?;
-    let first = linkage.crank_pivot();
-    Some(both_inside(region, first, linkage.second_pivot().unwrap_or(first)))
+    Some(all_inside(region, &linkage.pivots().collect::<Vec<Complex>>()))
 }
 
 /// The moving pins, in the frame of the body whose origin is P.
@@ -27,17 +26,21 @@ pub(super) fn pins(judged: &Judged<'_>) -> Option<Finding> {
     let from_origin = |along: f64| (Complex::new(along, 0.0) - linkage.coupler_offset()) / axis;
     // A coupler that slides through its block has one pin, C.
     let second = linkage.coupler().unwrap_or(0.0);
-    Some(both_inside(region, from_origin(0.0), from_origin(second)))
+    Some(all_inside(region, &[from_origin(0.0), from_origin(second)]))
 }
 
-/// Returns whether a region holds two places: their box or, of a polygon, the distance from its boundary of the place that is
-/// nearer to it or farther outside.
-fn both_inside(region: &Region, a: Complex, b: Complex) -> Finding {
+/// Returns whether a region holds all places: their box or, of a polygon, the distance from its boundary of the place that is
+/// nearest to it or farthest outside.
+fn all_inside(region: &Region, places: &[Complex]) -> Finding {
     match region {
         Region::Box(corners) => {
-            inside([a.re.min(b.re), a.im.min(b.im), a.re.max(b.re), a.im.max(b.im)], *corners)
+            let [low, high] = bounding_box(places.iter().copied());
+            inside([low.re, low.im, high.re, high.im], *corners)
         }
-        Region::Polygon(polygon) => Finding::least(depth(polygon, a).min(depth(polygon, b)), 0.0),
+        Region::Polygon(polygon) => {
+            let depths = places.iter().map(|place| depth(polygon, *place));
+            Finding::least(depths.fold(f64::INFINITY, f64::min), 0.0)
+        }
     }
 }
 

@@ -296,6 +296,18 @@ impl CrankLinkage {
         }
     }
 
+    /// Computes the places of all moving joints and of P at a crank angle in the given assembly, P the last; `None` if the loop
+    /// is open.
+    pub fn moving_with(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<Vec<Complex>> {
+        if let CrankLinkage::MultiLoop(linkage) = self {
+            let bodies = linkage.with_assembly(assembly).bodies(crank_angle)?;
+            return Some(linkage.moving(&bodies).collect());
+        }
+        let Joints { crank_pin, follower_pin, coupler_point } =
+            self.joints_with(crank_angle, assembly)?.joints;
+        Some(vec![crank_pin, follower_pin, coupler_point])
+    }
+
     /// Computes the angle of the output link at a position from the x axis, radians: of the follower of a four-bar, of the
     /// block of an inverted slider-crank, which turns with the coupler. `None` of a slider-crank, whose slider does not turn,
     /// and of a six-bar, of which no link is the output.
@@ -526,6 +538,12 @@ impl OnCircuit<CrankLinkage> {
     pub fn joints_at(&self, parameter: f64) -> Option<Joints> {
         let (crank_angle, assembly) = self.position_at(parameter);
         self.linkage.joints_with(crank_angle, assembly).map(|at| at.joints)
+    }
+
+    /// Computes the places of all moving joints and of P at a parameter, P the last; `None` if the loop is open.
+    pub fn moving_at(&self, parameter: f64) -> Option<Vec<Complex>> {
+        let (crank_angle, assembly) = self.position_at(parameter);
+        self.linkage.moving_with(crank_angle, assembly)
     }
 
     /// Computes the extremes of the transmission angle over an interval of the parameter, at most a whole turn, in closed

@@ -4,7 +4,7 @@ use crate::mechanism::{Complex, cross};
 
 /// Computes the corners of the hull, counter-clockwise from the leftmost; points nearer than `near` to another corner
 /// or to a side are left out. One corner if all points are in one place, two if all are in line.
-pub(super) fn hull(points: &[Complex], near: f64) -> Vec<Complex> {
+pub(crate) fn hull(points: &[Complex], near: f64) -> Vec<Complex> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|p, q| p.re.total_cmp(&q.re).then(p.im.total_cmp(&q.im)));
     let mut distinct: Vec<Complex> = Vec::with_capacity(sorted.len());

@@ -50,6 +50,7 @@ mod slider_tests;
 mod tests;
 
 pub use guide::{Guide, Sizes};
+pub(crate) use hull::hull as convex_hull;
 pub use joint::{Joint, Pin};
 pub use kind::Slot;
 pub use motion::{Reach, Stretch};

@@ -182,7 +182,7 @@ fn plates_stand_where_the_joints_are() {
         _ => joints.coupler_point,
     };
     for plate in Plate::all(&linkage, 0.4) {
-        let at = plate.placement(linkage, joints);
+        let at = plate.placement(linkage, joints).expect("a four-bar");
         for hole in &plate.holes {
             assert!((at.of(hole.at) - place(hole.name)).norm() < 1e-13, "{} {hole:?}", plate.link.name());
         }

@@ -4,7 +4,7 @@ use super::constants::{EXACT, SAME};
 use super::fit::State;
 use super::request::{DyadChainLimits, Request};
 use super::target::{Target, Variant};
-use crate::mechanism::{DyadChain, DyadChainKind, nearest_share};
+use crate::mechanism::{Complex, DyadChain, DyadChainKind, MultiLoop, bounding_box, nearest_share};
 use std::f64::consts::TAU;
 
 /// Phases of a turn at which the curve's distance from the target is measured.
@@ -108,14 +108,20 @@ impl DyadChainAnswer {
         let distances =
             || phases.iter().zip(request.points).map(|(phase, t)| (chain.point(&of, *phase) - t).norm());
         let sum_sq: f64 = distances().map(|d| d * d).sum();
-        let DyadChainLimits { transmission_min, longest_max, link_ratio_max, pivots_in } = request.limits;
+        let DyadChainLimits {
+            transmission_min,
+            longest_max,
+            link_ratio_max,
+            pivots_in,
+            footprint_in,
+            extent_max,
+        } = request.limits;
         let (transmission, longest, link_ratio) =
             (of.least_transmission(), chain.longest(), chain.link_ratio());
-        let is_inside = pivots_in.is_none_or(|[low, high]| {
-            let inside = |p: crate::mechanism::Complex| {
+        let is_inside = chain.pivots().into_iter().enumerate().all(|(i, p)| {
+            pivots_in[i.min(2)].is_none_or(|[low, high]| {
                 (low.re..=high.re).contains(&p.re) && (low.im..=high.im).contains(&p.im)
-            };
-            chain.pivots().into_iter().all(inside)
+            })
         });
         DyadChainAnswer {
             rms: (sum_sq / phases.len() as f64).sqrt(),
@@ -127,12 +133,40 @@ impl DyadChainAnswer {
             accepted: transmission >= transmission_min
                 && longest <= longest_max
                 && link_ratio <= link_ratio_max
-                && is_inside,
+                && is_inside
+                && reaches_within(&chain, &phases, request.closed, (footprint_in, extent_max)),
             hits: end.hits,
             chain,
             phases,
         }
     }
+}
+
+/// Returns whether the motion stays in a box and within an extent, by dense samples.
+fn reaches_within(
+    chain: &DyadChain,
+    phases: &[f64],
+    closed: bool,
+    (footprint_in, extent_max): (Option<[Complex; 2]>, f64),
+) -> bool {
+    if footprint_in.is_none() && extent_max.is_infinite() {
+        return true;
+    }
+    let (Ok(linkage), Some(first), Some(last)) =
+        (MultiLoop::of_dyad_chain(chain), phases.first(), phases.last())
+    else {
+        return false;
+    };
+    let span = if closed { TAU } else { last - first };
+    let at = |i: usize| chain.ground_angle() + first + span * i as f64 / MEASURED as f64;
+    let bodies = (0..=MEASURED).filter_map(|i| linkage.bodies(at(i)));
+    let moving: Vec<Complex> =
+        bodies.flat_map(|bodies| linkage.moving(&bodies).collect::<Vec<Complex>>()).collect();
+    let [low, high] = bounding_box(moving.into_iter().chain(linkage.pivots()));
+    let inside = footprint_in.is_none_or(|[from, to]| {
+        low.re >= from.re && low.im >= from.im && high.re <= to.re && high.im <= to.im
+    });
+    inside && (high - low).norm() <= extent_max
 }
 
 /// Returns the largest distance of the curve from the target's polygon.

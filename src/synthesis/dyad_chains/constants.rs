@@ -20,6 +20,16 @@ pub(super) const DRAWS_PER_EVALUATION: u64 = 2;
 /// Evaluations that an assignment of all points counts for, likewise.
 pub(super) const ASSIGNMENT_COSTS: u64 = 3;
 
+/// Evaluations that an island's start costs at most, in full; the last fits of a search, each; and a round of hops.
+pub(super) const FOUNDING: u64 = DRAWS as u64 / DRAWS_PER_EVALUATION
+    + (CASCADE[0] * FIRST_STEPS
+        + CASCADE[1] * (SECOND_STEPS + ASSIGNMENT_COSTS as usize)
+        + CASCADE[2] * (FULL_STEPS[0] + FULL_STEPS[1] + ASSIGNMENT_COSTS as usize)) as u64;
+pub(super) const ROUND: u64 =
+    JOBS * (HOPS * (2 * HOP_STEPS + 2 * ASSIGNMENT_COSTS as usize + FULL_STEPS[0] + FULL_STEPS[1])) as u64;
+/// The least share of an island's start that is run where the evaluations do not suffice for all of it.
+pub(super) const LEAST_SHARE: f64 = 0.01;
+
 /// Distinct ends that an island keeps, and hops start from.
 pub(super) const POOL: usize = 24;
 /// Jobs of a round, which may run on as many threads, and hops of each.

@@ -5,7 +5,7 @@ use super::constants::{
 };
 use super::request::DyadChainLimits;
 use super::target::Target;
-use crate::mechanism::dyad_chain::kinds::{DyadChainKind, GROUND};
+use crate::mechanism::dyad_chain::kinds::{CRANK, DyadChainKind, GROUND};
 use crate::mechanism::dyad_chain::sizes::{Joint, Side, distance, sides};
 use crate::mechanism::dyad_chain::transmission::cosine;
 use crate::mechanism::dyad_chain::{Placement, Proportions};
@@ -20,8 +20,12 @@ pub(super) struct Limits {
     pub(super) longest: f64,
     /// ln of the greatest ratio of two lengths.
     pub(super) ratio: f64,
-    /// Corners of the box of the fixed pivots.
-    pub(super) pivots_in: Option<[Complex; 2]>,
+    /// Corners of the boxes of A, of B, and of further fixed pivots.
+    pub(super) pivots_in: [Option<[Complex; 2]>; 3],
+    /// Corners of the box of all joints and P.
+    pub(super) footprint: Option<[Complex; 2]>,
+    /// Greatest diagonal of the box of the motion.
+    pub(super) extent: f64,
     /// Weights a point of the squares of the hinges.
     pub(super) cosine_weight: f64,
     pub(super) size_weight: f64,
@@ -34,6 +38,8 @@ pub(super) struct Bodies {
     kind: Option<DyadChainKind>,
     pub(super) sides: Vec<Side>,
     pub(super) pivots: Vec<Joint>,
+    /// The moving joints and P, each on a body that carries it.
+    pub(super) moving: Vec<(usize, Joint)>,
 }
 
 impl Bodies {
@@ -52,6 +58,16 @@ impl Bodies {
                 }
             }
         }
+        self.moving = vec![(CRANK, Joint::CrankPin)];
+        for dyad in 0..kind.dyads() {
+            self.moving.push((2 + 2 * dyad, Joint::Fixed(1.0)));
+            for (end, body) in kind.anchors(dyad).into_iter().enumerate().filter(|_| dyad > 0) {
+                if body != GROUND {
+                    self.moving.push((body, Joint::End { dyad, end }));
+                }
+            }
+        }
+        self.moving.push((kind.traced(), Joint::Traced));
     }
 
     /// Returns the indices of the least and the largest side without P, and the logarithm of their ratio.
@@ -94,7 +110,7 @@ impl Limits {
     /// Returns the limits of fits to a target; those of a mirrored variant have a mirrored box.
     pub(super) fn of(limits: &DyadChainLimits, target: &Target, mirrored: bool) -> Limits {
         let inside = Complex::new(WITHIN_SIZE, WITHIN_SIZE);
-        let pivots_in = limits.pivots_in.map(|corners| {
+        let within = |corners: [Complex; 2]| {
             let [low, high] = corners.map(|corner| (corner - target.centre) / target.radius);
             let [low, high] = if mirrored {
                 [Complex::new(low.re, -high.im), Complex::new(high.re, -low.im)]
@@ -108,12 +124,17 @@ impl Limits {
                 Complex::new(low.re.min(middle.re), low.im.min(middle.im)),
                 Complex::new(high.re.max(middle.re), high.im.max(middle.im)),
             ]
-        });
+        };
+        let pivots_in = limits.pivots_in.map(|corners| corners.map(within));
+        let footprint = limits.footprint_in.map(within);
+        let extent = limits.extent_max / target.radius * (1.0 - WITHIN_SIZE);
         Limits {
             cosine: (limits.transmission_min + WITHIN_ANGLE).cos(),
             longest: (limits.longest_max / target.radius).ln() - WITHIN_SIZE,
             ratio: limits.link_ratio_max.ln() - WITHIN_SIZE,
             pivots_in,
+            footprint,
+            extent,
             cosine_weight: COSINE_WEIGHT,
             size_weight: SIZE_WEIGHT,
             pivot_weight: PIVOT_WEIGHT,
@@ -153,8 +174,8 @@ impl Limits {
         }
         let over = (bodies.ratio(of, at).2 - self.ratio).max(0.0);
         sum = (sum + over * over) * self.size_weight;
-        if let Some(corners) = self.pivots_in {
-            for joint in &bodies.pivots {
+        for (i, joint) in bodies.pivots.iter().enumerate() {
+            if let Some(corners) = self.pivots_in[i.min(2)] {
                 let [x, y] = beyond(at.origin + at.ground * pivot_place(of, *joint), corners);
                 sum += (x * x + y * y) * self.pivot_weight;
             }

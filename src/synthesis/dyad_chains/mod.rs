@@ -15,6 +15,7 @@
 //! | `limits` | the limits of a fit and the weights of their hinges |
 //! | `normal_equations` | products of columns, and their solution |
 //! | `order` | the projection of phases onto sequences in order |
+//! | `reach` | how far the joints reach over the motion, for limits on footprint and extent |
 //! | `rematch` | the assignment of points to phases by dynamic programming |
 //! | `request` | what is asked for, and the caller's side of a search that is running |
 //! | `rows` | rows of all residuals |
@@ -33,6 +34,7 @@ mod fit;
 mod limits;
 mod normal_equations;
 mod order;
+mod reach;
 mod rematch;
 mod request;
 mod rows;

@@ -13,8 +13,13 @@ pub struct DyadChainLimits {
     pub longest_max: f64,
     /// Greatest ratio of two distances between joints of one body, P left out.
     pub link_ratio_max: f64,
-    /// Lower left and upper right corner of a box that holds all fixed pivots.
-    pub pivots_in: Option<[Complex; 2]>,
+    /// Lower left and upper right corners of the boxes of A, of B, and of all further fixed pivots.
+    pub pivots_in: [Option<[Complex; 2]>; 3],
+    /// Lower left and upper right corner of a box that holds all joints and P, over the turn of a closed path, over the
+    /// part of it between the first and the last point of an open one.
+    pub footprint_in: Option<[Complex; 2]>,
+    /// Greatest diagonal of the box of all joints and P over that motion; infinite for no limit.
+    pub extent_max: f64,
 }
 
 /// A path to draw with free timing, by a chain whose crank turns fully.
@@ -26,12 +31,14 @@ pub struct Request<'a> {
     pub closed: bool,
     /// The kinds of chains to search, e.g. [`DyadChainKind::SIX_BARS`].
     pub kinds: &'a [DyadChainKind],
+    /// Whether the crank has to turn counter-clockwise as P passes the points in their order.
+    pub counter_clockwise: bool,
     /// The limits.
     pub limits: DyadChainLimits,
     /// The seed of all random streams.
     pub seed: u64,
-    /// Evaluations after which the search ends at the next round: trial steps of fits, and draws and assignments by what
-    /// they cost.
+    /// Evaluations that the search may use: trial steps of fits, and draws and assignments by what they cost. Where they do not
+    /// suffice for the start of one island (some 23,000), that is cut down, to a hundredth at least.
     pub evaluations: u64,
     /// The rms distance at which the search ends; zero for an exact answer only.
     pub enough: f64,
@@ -44,12 +51,17 @@ pub struct Request<'a> {
 impl Request<'_> {
     /// Returns whether every number can be used.
     pub(super) fn is_usable(&self) -> bool {
-        let DyadChainLimits { transmission_min, longest_max, link_ratio_max, pivots_in } = self.limits;
-        let boxed = pivots_in.is_none_or(|[low, high]| low.re < high.re && low.im < high.im);
+        let DyadChainLimits { transmission_min, longest_max, link_ratio_max, pivots_in, .. } = self.limits;
+        let boxed = pivots_in
+            .iter()
+            .chain([&self.limits.footprint_in])
+            .flatten()
+            .all(|[low, high]| low.re < high.re && low.im < high.im);
         !self.kinds.is_empty()
             && (0.0..1.5).contains(&transmission_min)
             && longest_max > 0.0
             && link_ratio_max > 1.0
+            && self.limits.extent_max > 0.0
             && boxed
     }
 }

@@ -112,6 +112,7 @@ impl Rows {
         self.speed_sq[points.count..].fill(0.0);
         gram(&self.normal, padded, count + 7, &mut self.fixed);
         self.add_limits(now, points, limits, bodies);
+        self.add_reaches(now, points, limits);
         self.add_excursions(now, frames);
     }
 
@@ -148,8 +149,8 @@ impl Rows {
             row.iter_mut().zip(other).for_each(|(a, b)| *a -= b);
             add_square(fixed, &row, count + 7, weight);
         }
-        if let Some(corners) = limits.pivots_in {
-            for joint in &bodies.pivots {
+        for (i, joint) in bodies.pivots.iter().enumerate() {
+            if let Some(corners) = limits.pivots_in[i.min(2)] {
                 let place = pivot_place(&now.of, *joint);
                 let over = beyond(now.at.origin + now.at.ground * place, corners);
                 for (axis, over) in over.into_iter().enumerate().filter(|(_, over)| *over != 0.0) {
@@ -157,6 +158,15 @@ impl Rows {
                     add_square(fixed, &row, count + 7, limits.pivot_weight * n);
                 }
             }
+        }
+    }
+
+    /// Adds the hinges of footprint and extent.
+    #[inline(always)]
+    fn add_reaches(&mut self, now: &Trial, points: &Points, limits: &Limits) {
+        let (count, weight) = (now.shape.count(), limits.pivot_weight * points.count as f64);
+        for broken in &now.broken {
+            add_square(&mut self.fixed, &broken.row(now, &self.rates), count + 7, weight);
         }
     }
 
@@ -228,6 +238,7 @@ fn pivot_row(
 
 #[cfg(test)]
 mod tests {
+    use super::super::reach::broken;
     use super::super::target::Target;
     use super::*;
     use crate::mechanism::AssemblyMode;
@@ -238,7 +249,13 @@ mod tests {
         cosine: 0.6,
         longest: -0.5,
         ratio: 0.4,
-        pivots_in: Some([Complex::new(-0.1, -0.1), Complex::new(0.1, 0.1)]),
+        pivots_in: [
+            Some([Complex::new(-0.1, -0.1), Complex::new(0.1, 0.1)]),
+            Some([Complex::new(-0.2, -0.1), Complex::new(0.1, 0.2)]),
+            Some([Complex::new(-0.1, -0.3), Complex::new(0.3, 0.1)]),
+        ],
+        footprint: Some([Complex::new(-0.4, -0.3), Complex::new(0.5, 0.2)]),
+        extent: 1.1,
         cosine_weight: 4.0,
         size_weight: 0.7,
         pivot_weight: 0.9,
@@ -252,7 +269,10 @@ mod tests {
         trial.find_excursions(points);
         let n = points.count as f64;
         let over: f64 = trial.excursions.iter().map(|e| e.excess * e.excess).sum();
-        let hinges = LIMITS.of_transmission(&trial.of) + LIMITS.of_sizes(&trial.of, &at, bodies);
+        let reached: f64 = broken(trial, points, &LIMITS, bodies).iter().map(|b| b.over * b.over).sum();
+        let hinges = LIMITS.of_transmission(&trial.of)
+            + LIMITS.of_sizes(&trial.of, &at, bodies)
+            + LIMITS.pivot_weight * reached;
         trial.misfit_at(points, &at) + n * hinges + over
     }
 
@@ -296,6 +316,7 @@ mod tests {
                 *phase = 0.3 * i as f64;
             }
             let value = sum_sq(&mut trial, points, &bodies, (shape, at));
+            trial.broken = broken(&trial, points, &LIMITS, &bodies);
             let mut rows = Rows::default();
             rows.resize(points.mask.len());
             rows.derive(&trial, points, &LIMITS, &bodies, &mut Frames::of(ComplexLanes::ZERO));

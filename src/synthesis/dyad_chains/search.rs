@@ -14,8 +14,8 @@ use super::answers::{DyadChainAnswer, DyadChainOutcome, End, Pool, rank};
 use super::atlas::Atlas;
 use super::checkpoint::{DyadChainState, Resumed};
 use super::constants::{
-    CASCADE, DRAWS, DRAWS_PER_EVALUATION, ENOUGH, FEW, HOPS, IMPROVED, JOBS, PATIENCE, POOL, PREFILTERED,
-    SAME, SECOND_STEPS,
+    CASCADE, DRAWS, DRAWS_PER_EVALUATION, ENOUGH, FEW, FOUNDING, HOPS, IMPROVED, JOBS, LAST_STEPS,
+    LEAST_SHARE, PATIENCE, POOL, PREFILTERED, ROUND, SAME, SECOND_STEPS,
 };
 use super::curve::EVEN;
 use super::fit::State;
@@ -49,12 +49,15 @@ const STAGE_CHUNKS: [usize; 3] = [16, 4, 2];
 ///     transmission_min: 30f64.to_radians(),
 ///     longest_max: 9.0,
 ///     link_ratio_max: 100.0,
-///     pivots_in: None,
+///     pivots_in: [None; 3],
+///     footprint_in: None,
+///     extent_max: f64::INFINITY,
 /// };
 /// let request = Request {
 ///     points: &square,
 ///     closed: true,
 ///     kinds: &DyadChainKind::SIX_BARS,
+///     counter_clockwise: false,
 ///     limits,
 ///     seed: 1,
 ///     evaluations: 1,
@@ -76,7 +79,7 @@ pub fn search(
     if !request.is_usable() {
         return None;
     }
-    let target = Target::of(request.points, request.closed, FEW, EVEN)?;
+    let target = Target::of(request.points, request.closed, FEW, EVEN)?.turning(request.counter_clockwise);
     let limits = [false, true].map(|mirrored| Limits::of(&request.limits, &target, mirrored));
     let setup = Setup { target: &target, limits: &limits };
     let mut search = Search {
@@ -122,10 +125,16 @@ impl Search<'_> {
         let best = pool.best().min(self.archive.best());
         let enough = self.request.enough / self.setup.target.radius;
         let came = self.done.islands.iter().filter(|rms| **rms <= (1.0 + SAME) * self.rms(best)).count();
-        self.done.evaluations >= self.request.evaluations
+        self.left() < ROUND
             || best <= ENOUGH.max(enough * enough)
             || self.request.repeats.is_some_and(|wanted| came >= wanted.max(1))
             || (self.watch.stopped)()
+    }
+
+    /// Returns the evaluations that are left beside those of the last fits.
+    fn left(&self) -> u64 {
+        let last = (self.request.answers + self.request.kinds.len()) * LAST_STEPS;
+        self.request.evaluations.saturating_sub(self.done.evaluations + last as u64)
     }
 
     /// Returns the rms distance of a value, in the unit of the target.
@@ -165,6 +174,9 @@ impl Search<'_> {
     /// Runs an island and keeps its ends; returns whether it came to its own end, before the search is over.
     fn run_island(&mut self) -> bool {
         let from = self.done.evaluations;
+        if self.left() < FOUNDING && !self.archive.ends.is_empty() {
+            return false;
+        }
         let mut island = self.founded();
         let (mut record, mut improved) = (island.best(), self.done.evaluations);
         let is_whole = loop {
@@ -202,29 +214,32 @@ impl Search<'_> {
     /// answer yet, takes the best of each stage alone to the end.
     fn founded(&mut self) -> Pool {
         let setup = self.setup;
+        // Of few evaluations the first island takes what there is.
+        let share = (self.left() as f64 / FOUNDING as f64).clamp(LEAST_SHARE, 1.0);
+        let of = |all: usize| ((all as f64 * share) as usize).max(1);
         let atlas = Atlas {
             kinds: self.request.kinds,
             seed: self.request.seed,
             stream: self.next_stream,
-            draws: DRAWS,
-            prefiltered: PREFILTERED,
+            draws: of(DRAWS),
+            prefiltered: of(PREFILTERED),
             limits: &setup.limits[0],
         };
         self.next_stream += atlas.streams();
-        let mut starts = atlas.starts(setup.target, CASCADE[0]);
-        self.done.draws += DRAWS as u64;
-        self.done.evaluations += DRAWS as u64 / DRAWS_PER_EVALUATION;
-        starts.truncate(self.most(CASCADE[0]));
+        let mut starts = atlas.starts(setup.target, of(CASCADE[0]));
+        self.done.draws += of(DRAWS) as u64;
+        self.done.evaluations += of(DRAWS) as u64 / DRAWS_PER_EVALUATION;
+        starts.truncate(self.most(of(CASCADE[0])));
         let [first, second, third] = STAGE_CHUNKS;
         let fitted = self
             .in_parallel(&starts, first, |bench, start| Some((setup.first_fit(bench, start), start.variant)));
-        let states = self.best_states(fitted, CASCADE[1]);
+        let states = self.best_states(fitted, of(CASCADE[1]));
         let fitted = self.in_parallel(&states, second, |bench, (state, variant)| {
             let mut state = state.clone();
             setup.second_fit(bench, &mut state, *variant, SECOND_STEPS);
             Some((state, *variant))
         });
-        let states = self.best_states(fitted, CASCADE[2]);
+        let states = self.best_states(fitted, of(CASCADE[2]));
         let ends = self.in_parallel(&states, third, |bench, (state, variant)| {
             Some(setup.full_fit(bench, state, *variant))
         });

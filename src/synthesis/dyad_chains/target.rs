@@ -126,6 +126,17 @@ impl Target {
         Some(out)
     }
 
+    /// Returns the target, for cranks that turn counter-clockwise alone if `counter_clockwise`: nothing resembles the two variants
+    /// that stand for the other sense.
+    pub(super) fn turning(mut self, counter_clockwise: bool) -> Self {
+        for variant in Variant::ALL {
+            if counter_clockwise && variant.reversed != variant.mirrored {
+                self.even[variant.index()].fill(Complex::new(0.0, 0.0));
+            }
+        }
+        self
+    }
+
     /// Returns a chain of a variant in the coordinates of the target, and its phases in the order of the target's points.
     pub(super) fn restored(
         &self,

@@ -1,6 +1,7 @@
 //! Value of a chain at one set of unknowns: positions, the linear part, hinges, excursions.
 
 use super::limits::{Bodies, Limits};
+use super::reach::{Broken, broken};
 use super::target::Points;
 use crate::mechanism::AssemblyMode;
 use crate::mechanism::dyad_chain::kinds::{CRANK, MAX_DYADS};
@@ -37,6 +38,8 @@ pub(super) struct Trial {
     along: [Vec<f64>; 2],
     pub(super) grid: Grid,
     pub(super) excursions: Vec<Excursion>,
+    /// Limits on footprint and extent that the motion breaks.
+    pub(super) broken: Vec<Broken>,
     /// Mean square with the hinges, and without.
     pub(super) value: f64,
     pub(super) misfit: f64,
@@ -60,6 +63,7 @@ impl Default for Trial {
             along: [Vec::new(), Vec::new()],
             grid,
             excursions: Vec::new(),
+            broken: Vec::new(),
             value: f64::INFINITY,
             misfit: f64::INFINITY,
         }
@@ -125,6 +129,9 @@ impl Trial {
         (self.at, self.misfit) = (at, misfit);
         self.find_excursions(points);
         let over: f64 = self.excursions.iter().map(|e| e.excess * e.excess).sum();
+        self.broken = broken(self, points, limits, bodies);
+        let beyond: f64 = self.broken.iter().map(|limit| limit.over * limit.over).sum();
+        let sizes = sizes + limits.pivot_weight * beyond;
         let value = misfit + limits.of_transmission(&self.of) + sizes + over / n;
         if value.is_finite() {
             self.value = value;

@@ -71,7 +71,7 @@ pub(super) fn beside_four_bars(context: Context<'_>, limit: u64) -> (Vec<Candida
     }
     let has_output =
         |kind: &LinkageKind| spec.task.output.as_ref().is_none_or(|output| output.output.is_of(*kind));
-    let slides = |kind: &LinkageKind| *kind != LinkageKind::FourBar && has_output(kind);
+    let slides = |kind: &LinkageKind| kind.has_slider() && has_output(kind);
     let kinds: Vec<LinkageKind> = LinkageKind::ALL.into_iter().filter(slides).collect();
     (spec.design.mechanism, spec.solve.candidates) = (kinds.clone(), 1);
     let Ok(within) = problem.with(spec) else { return (Vec::new(), Evaluations::default()) };
@@ -88,7 +88,7 @@ impl<'a> Sliders<'a> {
         let target = Target::of(problem);
         let kinds: Vec<(LinkageKind, Limited)> = kinds
             .iter()
-            .filter(|kind| **kind != LinkageKind::FourBar)
+            .filter(|kind| kind.has_slider())
             .map(|kind| (*kind, Limited::of(problem, *kind, target.centre, target.size)))
             .collect();
         let earlier = context.keeper.and_then(|keeper| keeper.earlier().sliders.clone());

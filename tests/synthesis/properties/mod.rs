@@ -91,7 +91,9 @@ fn the_plain_checks_see_what_is_wrong() {
             let margin =
                 c.linkage.four_bar().expect("a four-bar").transmission_over_cycle().worst().to_degrees();
             let last = c.t1_at.len() - 1;
-            c.t1_at[last] = c.t1_at[last].opposite();
+            let mut t1_at = c.t1_at.to_vec();
+            t1_at[last] = t1_at[last].opposite();
+            c.t1_at = t1_at.into();
             spec.require.branch == OnePolicy::One && spec.require.circuit == OnePolicy::One && margin > 5.0
         }),
         ("two points in each other's place", |spec, c| {

@@ -363,7 +363,7 @@ fn lists_of_the_wrong_length_and_numbers_that_are_none_do_not_panic() {
             let path = &mut record.problem.resolved.task;
             match breakage {
                 0 => candidate.crank_deg.clear(),
-                1 => candidate.t1_at.truncate(1),
+                1 => candidate.t1_at = candidate.t1_at[..1].to_vec().into(),
                 2 => candidate.crank_deg.iter_mut().for_each(|angle| *angle = f64::NAN),
                 3 => path.points = vec![[f64::INFINITY, 0.0], [1e300, f64::NAN]],
                 4 => path.points = vec![[3.0, 4.0]; 2],

@@ -86,7 +86,7 @@ pub fn candidate(
         rank,
         linkage: linkage.into(),
         crank_deg: crank_angles.iter().map(|a| a.to_degrees()).collect(),
-        t1_at: t1.to_vec(),
+        t1_at: t1.to_vec().into(),
         frame_deg: error.angle.as_ref().map(|angle| angle.frame.to_degrees()),
         input_offset_deg: None,
         output_offset_deg: None,
