@@ -217,6 +217,10 @@ pub fn missing(record: &Record, which: Which) -> Option<String> {
         Which::Pick(Pick::Buildable) if record.buildable.is_none() => Some(format!(
             "the result has no buildable candidate besides its {n} (one is offered where the first has warnings)"
         )),
+        Which::Pick(Pick::OtherKind) if record.other_kind.is_none() => Some(
+            "the result has no linkage of another kind (one is offered where no four-bar is acceptable and a six-bar is)"
+                .to_owned(),
+        ),
         Which::Pick(pick) if record.pick(pick).is_none() => Some(format!(
             "the result has no {} linkage (it is looked for where a candidate is accepted and solve.advice is on)",
             pick.words()

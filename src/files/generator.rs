@@ -4,7 +4,7 @@
 //! | kind of file | known by |
 //! |---|---|
 //! | SVG, HTML, DXF, STL, OpenSCAD, PNG, GIF, cut list, Markdown | the words of [`mark`], at the writer's place for them |
-//! | linkage file | the mark in its first line, and its table (`[linkage]`, `[slider_crank]`, `[inverted_slider_crank]`), still in it |
+//! | linkage file | the mark in its first line, and its table (`[linkage]`, `[slider_crank]`, `[inverted_slider_crank]`, `[chain]`), still in it |
 //! | CSV | its header row, equal to that of the file which replaces it |
 //! | JSON | `tool.name`, and the key that the kind is about |
 //! | problem file | never: it is a user's from the moment it is there |
@@ -137,7 +137,7 @@ fn first_line(bytes: &[u8]) -> &[u8] {
 }
 
 /// The tables of the linkage files that are written.
-const LINKAGES: [&str; 3] = ["linkage", "slider_crank", "inverted_slider_crank"];
+const LINKAGES: [&str; 4] = ["linkage", "slider_crank", "inverted_slider_crank", "chain"];
 
 /// Returns whether a text is still a linkage file: a user who has made a problem of one may have left the mark in.
 fn is_linkage(bytes: &[u8]) -> bool {

@@ -62,7 +62,8 @@ impl Record {
         });
         let picks = self.picks.iter().flat_map(Picks::named).map(|(_, pick)| pick);
         let members = self.front.iter().flat_map(|front| &front.members).map(|member| &member.candidate);
-        let all = self.candidates.iter().chain(&self.buildable).chain(picks).chain(members);
+        let all =
+            self.candidates.iter().chain(&self.buildable).chain(&self.other_kind).chain(picks).chain(members);
         forms.or_else(|| all.into_iter().find_map(of_candidate))
     }
 }

@@ -11,6 +11,7 @@
 //! | [`exact`] | exact synthesis: every linkage through nine points, counted, and the real ones listed |
 //! | [`extras`] | additions to a candidate's figures: warnings, the same curve by other linkages, families of answers |
 //! | [`front`] | the front of a problem and the picks beside its closest candidate |
+//! | [`kinds`] | the best linkage of each kind that was searched for |
 //! | [`limits`] | what a record may hold: nothing that no run writes, so that a reader's work and memory are bounded by its file |
 //! | [`pick`] | the linkages that a record offers beside its ranked candidates, each with the name that files and commands use |
 //! | [`repeats`] | repeated hits of the best answer, and the chance that a better one was not seen |
@@ -32,6 +33,7 @@ pub mod digest;
 mod exact;
 mod extras;
 mod front;
+mod kinds;
 mod limits;
 mod pick;
 mod repeats;
@@ -46,6 +48,7 @@ pub use exact::{
 };
 pub use extras::{Alternative, Family, ON_BOUND_TEXT, Warning, WarningKind};
 pub use front::{Axis, EQUAL_FIGURES, Figures, Front, LEAST_AXES, MOST_AXES, MOST_MEMBERS, Member, Picks};
+pub use kinds::BestOfKind;
 pub use limits::BeyondLimits;
 pub use pick::Pick;
 pub use repeats::Repeats;
@@ -83,6 +86,12 @@ pub struct Record {
     /// among the candidates, 0 where it is none of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buildable: Option<Candidate>,
+    /// Where four-bars alone are searched for and none is acceptable: an acceptable six-bar or eight-bar.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub other_kind: Option<Candidate>,
+    /// Where several kinds are searched for, six-bars or eight-bars among them: the best of each, the simplest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub of_kinds: Vec<BestOfKind>,
     /// Linkages nearly as good as the closest that are smaller, or transmit better.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub picks: Option<Picks>,
@@ -132,6 +141,8 @@ impl Record {
             evaluations,
             family: None,
             buildable: None,
+            other_kind: None,
+            of_kinds: Vec::new(),
             picks: None,
             front: None,
             exact: None,

@@ -11,11 +11,13 @@ pub enum Pick {
     Smallest,
     /// The best transmitting one whose error is nearly that of the closest.
     BestTransmission,
+    /// An acceptable six-bar or eight-bar where no four-bar is acceptable.
+    OtherKind,
 }
 
 impl Pick {
     /// Every pick.
-    pub const ALL: [Pick; 3] = [Pick::Buildable, Pick::Smallest, Pick::BestTransmission];
+    pub const ALL: [Pick; 4] = [Pick::Buildable, Pick::Smallest, Pick::BestTransmission, Pick::OtherKind];
 
     /// Returns the name in file names and on the command line: `best-transmission`.
     pub const fn name(self) -> &'static str {
@@ -23,6 +25,7 @@ impl Pick {
             Pick::Buildable => "buildable",
             Pick::Smallest => "smallest",
             Pick::BestTransmission => "best-transmission",
+            Pick::OtherKind => "other-kind",
         }
     }
 
@@ -32,6 +35,7 @@ impl Pick {
             Pick::Buildable => "buildable",
             Pick::Smallest => "smallest",
             Pick::BestTransmission => "best transmitting",
+            Pick::OtherKind => "other kind of",
         }
     }
 
@@ -49,6 +53,7 @@ impl Record {
             Pick::Buildable => self.buildable.as_ref(),
             Pick::Smallest => picks?.smallest.as_ref(),
             Pick::BestTransmission => picks?.best_transmission.as_ref(),
+            Pick::OtherKind => self.other_kind.as_ref(),
         }
     }
 }

@@ -116,7 +116,25 @@ pub(super) fn relaxations(record: &Record) -> String {
         // Not broken into lines, so that it can be copied.
         out.push_str(&format!("    {options}   ({rms})\n"));
     }
+    if let Some(text) = other_kind(record) {
+        out.push('\n');
+        out.push_str(&wrapped("  ", "  ", &text, COLUMNS));
+    }
     out
+}
+
+/// Returns the linkage of another kind that is acceptable where no four-bar is, and the key that asks for it.
+pub(super) fn other_kind(record: &Record) -> Option<String> {
+    let other = record.other_kind.as_ref()?;
+    let unit = words::error_unit(record);
+    let kind = other.type_name();
+    Some(format!(
+        "No four-bar that was found meets it; this {kind} does: rms {}{unit}, largest error {}{unit}, worst transmission angle {}°; \
+         linkage-other-kind.toml. --set design.mechanism={kind} looks for more of them.",
+        significant(other.error.rms, 3),
+        significant(other.error.max, 3),
+        significant(other.transmission_deg.worst, 3),
+    ))
 }
 
 /// Returns the changes that help, in the form in which they are typed, each with the resulting error.

@@ -8,7 +8,7 @@ use super::text::{
 };
 use super::{output, price, words};
 use crate::mechanism::{CrankLinkage, LinkageKind, MultiLoop, Unit};
-use crate::record::{AngleErrorRecord, Candidate, ErrorRecord, Record};
+use crate::record::{AngleErrorRecord, BestOfKind, Candidate, ErrorRecord, Record};
 use crate::task::spec::{Measure, ProblemSpec, TaskSpec};
 use crate::task::{Defect, TaskKind};
 
@@ -230,7 +230,7 @@ fn notes(record: &Record) -> String {
     let mut out = String::from("\n");
     let first = words::minimised_in(record).map_or(String::new(), |(_, sentence)| format!("{sentence} "));
     out.push_str(&indented(&format!("{first}{} ratio: longest to shortest link.{unit}", columns(record))));
-    let more = [words::tolerances(record), against_raw(record), words::fewer(record)];
+    let more = [words::tolerances(record), against_raw(record), of_kinds(record), words::fewer(record)];
     for sentence in more.into_iter().flatten() {
         out.push('\n');
         out.push_str(&indented(&sentence));
@@ -288,6 +288,30 @@ fn columns(record: &Record) -> &'static str {
         "max: the largest error, at which point (from 0). to curve: rms distance to the whole coupler curve. \
          transmission: the worst angle, from 0 to 90°, over the crank's full turn (cycle) or between the points (used)."
     }
+}
+
+/// Returns the best of each kind that was searched for: `Best of each kind: four-bar rms 0.1, largest error 0.3, not accepted; ..`.
+pub(super) fn of_kinds(record: &Record) -> Option<String> {
+    let unit = words::unit_suffix(record);
+    let of = |best: &BestOfKind| {
+        let [rms, max] = [best.rms, best.max].map(|error| significant(error, 3));
+        let verdict = if best.accepted { "" } else { ", not accepted" };
+        format!("{} rms {rms}{unit}, largest error {max}{unit}{verdict}", best.kind)
+    };
+    let list: Vec<String> = record.of_kinds.iter().map(of).collect();
+    let left = record
+        .problem
+        .resolved
+        .design
+        .mechanism
+        .iter()
+        .filter(|kind| record.of_kinds.iter().all(|best| best.kind != **kind));
+    let left: Vec<String> = left.map(ToString::to_string).collect();
+    let without = match left.is_empty() {
+        true => String::new(),
+        false => format!(" (not needed: {})", left.join(", ")),
+    };
+    (!list.is_empty()).then(|| format!("Best of each kind: {}{without}.", list.join("; ")))
 }
 
 /// Returns the distances of the curves from the points as they were given, before smoothing and resampling.

@@ -512,7 +512,10 @@ pub(super) fn standing(record: &Record, candidate: &Candidate) -> String {
         return ranked();
     }
     if let Some(pick) = Pick::ALL.into_iter().find(|pick| record.pick(*pick) == Some(candidate)) {
-        return format!("the {} candidate", pick.words());
+        return match pick {
+            Pick::OtherKind => format!("the {} beside the candidates", candidate.type_name()),
+            _ => format!("the {} candidate", pick.words()),
+        };
     }
     let members = record.front.as_ref().map_or(&[][..], |front| &front.members);
     let place = members.iter().position(|member| member.candidate == *candidate);

@@ -42,7 +42,7 @@
 //! | [`repeats`] | repeated hits of the best answer, counted over independent rounds |
 //! | [`required`] | ends whose points have strayed to circuits or branches that the referee will refuse, and starts that lead back |
 //! | [`rounds`] | multistart search for prescribed timing in the physical parameters |
-//! | `several_loops` | search for six-bars and eight-bars: the limits of a problem as those of [`dyad_chains`], and its answers as judged candidates |
+//! | [`several_loops`] | search for six-bars and eight-bars: the limits of a problem as those of [`dyad_chains`], and its answers as judged candidates |
 //! | `sliders` | multistart search for linkages with a slider |
 //! | [`snap`] | snapping: lengths are brought to stock sizes, and the free parameters fitted again |
 //! | [`starts`] | starts of local searches: shapes drawn by type, positions by timing, the rest by linear least squares |
@@ -89,7 +89,7 @@ mod repeated;
 mod repeats;
 mod required;
 mod rounds;
-mod several_loops;
+pub mod several_loops;
 mod sliders;
 pub mod snap;
 pub mod starts;

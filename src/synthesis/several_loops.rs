@@ -2,45 +2,140 @@
 //! and its answers as judged candidates.
 
 use super::driver::Found;
-use super::dyad_chains::{DyadChainLimits, DyadChainOutcome, DyadChainProgress, Request, Watch, search};
+use super::dyad_chains::{
+    DyadChainAnswer, DyadChainLimits, DyadChainOutcome, DyadChainProgress, Request, Watch, refit, search,
+};
 use super::{Context, Progress};
-use crate::judge::assess::assess;
+use crate::judge::assess::{assess, assess_again};
 use crate::judge::rank::exact_cost;
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{AssemblyMode, Complex, DyadChainKind, LinkageKind, MultiLoop};
-use crate::record::{Candidate, Reason, Repeats};
+use crate::record::{Candidate, Evaluations, Reason, Repeats};
 use crate::task::Problem;
 use crate::task::spec::{DirectionPolicy, Limits};
+use crate::task::without_several_loops::WithoutSeveralLoops;
 
 /// The name of the phase.
 const PHASE: &str = "least-squares";
 /// Islands that have to come to the best answer before the search ends.
 const REPEATS: usize = 3;
+/// The most evaluations of a search for a linkage that is offered beside four-bars.
+const OFFERED: u64 = 120_000;
+/// Points of a path below which none is offered: a linkage of many parameters passes a few points anyhow.
+const LEAST_POINTS: usize = 20;
+/// Trial steps of a fit under tightened limits.
+const REFIT_STEPS: usize = 60;
 /// The most answers that are judged, for each that is listed.
 const JUDGED: usize = 3;
-/// Positions that a step of a fit computes at a point: the point, and its derivatives.
-const POSITIONS: u64 = 1;
+
+/// Searches for six-bars, then for eight-bars, for the path of a problem of four-bars that has a tolerance, with as many evaluations as
+/// are left of its budget, `OFFERED` at most each; returns the first acceptable one, annotated, and the evaluations.
+pub fn beside_four_bars(context: Context<'_>) -> (Option<Candidate>, Evaluations) {
+    let spec = context.problem.spec();
+    let mut spent = Evaluations::default();
+    let Some(tolerance) =
+        context.problem.task().tolerances().and_then(|all| all.iter().copied().reduce(f64::min))
+    else {
+        return (None, spent);
+    };
+    let is_dense = context.points() >= LEAST_POINTS;
+    if !is_dense
+        || !spec.design.is_of_four_bars()
+        || spec.require.types.iter().any(|kind| !kind.input_turns_fully())
+        || WithoutSeveralLoops::of(&spec.task, &spec.solve, &spec.require).is_some()
+    {
+        return (None, spent);
+    }
+    for kind in [LinkageKind::SixBar, LinkageKind::EightBar] {
+        let mut asked = spec.clone();
+        (asked.design.mechanism, asked.solve.candidates) = (vec![kind], 1);
+        asked.require.types.clear();
+        let Ok(within) = context.problem.with(asked) else { continue };
+        let within = Context { keeper: None, ..context.of(&within) }.silent();
+        let limit = spec.solve.evaluations.min(OFFERED);
+        // Errors of a third of the tolerance in the mean are hardly anywhere beyond it.
+        let found = search_until(within, kind, limit, tolerance / 3.0);
+        spent += found.evaluations;
+        let best = found
+            .candidates
+            .into_iter()
+            .filter_map(|c| assess_again(context.problem, &c))
+            .find(|c| c.accepted);
+        if let Some(mut best) = best {
+            super::answers::complete(context.problem, &mut best);
+            return (Some(best), spent);
+        }
+        if context.stopped() {
+            break;
+        }
+    }
+    (None, spent)
+}
+
+/// Fits a candidate of several loops under the limits of a problem with at most so many evaluations; returns the end, judged, and the
+/// evaluations used.
+pub(super) fn refitted(context: Context<'_>, from: &Candidate, evaluations: u64) -> (Option<Candidate>, u64) {
+    let problem = context.problem;
+    let chain = from.linkage.multi_loop().and_then(MultiLoop::to_dyad_chain);
+    let Some((chain, kind)) = chain.zip(from.linkage.kind().dyads()) else { return (None, 0) };
+    let (points, kinds) = (points(problem, false), DyadChainKind::all(kind));
+    let request = Request { points: &points, ..request(problem, &kinds, evaluations) };
+    let ground = chain.ground_angle();
+    let phases: Vec<f64> =
+        from.crank_deg.iter().take(points.len()).map(|deg| deg.to_radians() - ground).collect();
+    let steps = usize::try_from(evaluations).unwrap_or(usize::MAX).min(REFIT_STEPS);
+    match refit(&request, &chain, &phases, steps) {
+        Some((answer, used)) => (judged(problem, &answer, false), used),
+        None => (None, 0),
+    }
+}
+
+/// Returns the request of a problem without its points.
+fn request<'a>(problem: &Problem, kinds: &'a [DyadChainKind], evaluations: u64) -> Request<'a> {
+    Request {
+        points: &[],
+        closed: problem.task().closed(),
+        counter_clockwise: problem.spec().require.direction != DirectionPolicy::Any,
+        kinds,
+        limits: limits(problem),
+        seed: problem.spec().solve.seed,
+        evaluations,
+        enough: 0.0,
+        repeats: Some(REPEATS),
+        answers: JUDGED * problem.spec().solve.candidates,
+    }
+}
+
+/// Returns the candidate of an answer; of one to the reversed points if the crank has to turn clockwise.
+fn judged(problem: &Problem, answer: &DyadChainAnswer, reversed: bool) -> Option<Candidate> {
+    let linkage = MultiLoop::of_dyad_chain(&answer.chain).ok()?;
+    let ground = answer.chain.ground_angle();
+    let mut angles: Vec<f64> = answer.phases.iter().map(|phase| wrapped(phase + ground)).collect();
+    if reversed {
+        angles.reverse();
+    }
+    if problem.task().repeats_first() {
+        angles.push(angles[0]);
+    }
+    let assemblies = vec![linkage.assembly(); angles.len()];
+    let (crank_deg, t1_at): (Vec<f64>, Vec<AssemblyMode>) = unwrapped(problem, linkage, angles, assemblies);
+    assess(problem, linkage, &crank_deg, &t1_at)
+}
 
 /// Searches for linkages of a kind with several loops with at most `limit` evaluations; nothing where the kind has one loop.
 pub(super) fn search_for(context: Context<'_>, kind: LinkageKind, limit: u64) -> Found {
+    search_until(context, kind, limit, 0.0)
+}
+
+/// As [`search_for`], ending at an rms error of `enough`.
+fn search_until(context: Context<'_>, kind: LinkageKind, limit: u64, enough: f64) -> Found {
     let problem = context.problem;
     let Some(dyads) = kind.dyads() else { return Found::nothing() };
     let kinds = DyadChainKind::all(dyads);
     let clockwise = problem.spec().require.direction == DirectionPolicy::Cw;
     let points = points(problem, clockwise);
-    let request = Request {
-        points: &points,
-        closed: problem.task().closed(),
-        counter_clockwise: problem.spec().require.direction != DirectionPolicy::Any,
-        kinds: &kinds,
-        limits: limits(problem),
-        seed: problem.spec().solve.seed,
-        evaluations: limit,
-        enough: 0.0,
-        repeats: Some(REPEATS),
-        answers: JUDGED * problem.spec().solve.candidates,
-    };
+    let request = Request { points: &points, enough, ..request(problem, &kinds, limit) };
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().dyad_chains.get(&kind).cloned());
     let observer = |now: &DyadChainProgress| {
         let sum_sq = now.best_rms * now.best_rms * points.len() as f64;
@@ -58,11 +153,11 @@ pub(super) fn search_for(context: Context<'_>, kind: LinkageKind, limit: u64) ->
     };
     let watch = Watch { stopped: &|| context.stopped(), observer: &observer, keeper: &keep };
     let Some(outcome) = search(&request, watch, earlier.as_ref()) else { return Found::nothing() };
-    found(context, &outcome, clockwise, limit)
+    found(context, &outcome, clockwise)
 }
 
 /// Returns what a search has found, its answers judged.
-fn found(context: Context<'_>, outcome: &DyadChainOutcome, clockwise: bool, limit: u64) -> Found {
+fn found(context: Context<'_>, outcome: &DyadChainOutcome, clockwise: bool) -> Found {
     let problem = context.problem;
     let judging = context.judging();
     let answers = outcome.answers.iter().chain(&outcome.best_of_kinds);
@@ -71,22 +166,11 @@ fn found(context: Context<'_>, outcome: &DyadChainOutcome, clockwise: bool, limi
         if !judging.may_go_on() {
             break;
         }
-        let Ok(linkage) = MultiLoop::of_dyad_chain(&answer.chain) else { continue };
-        if candidates.iter().any(|known| known.linkage.multi_loop() == Some(&linkage)) {
-            continue;
-        }
-        let ground = answer.chain.ground_angle();
-        let mut angles: Vec<f64> = answer.phases.iter().map(|phase| wrapped(phase + ground)).collect();
-        if clockwise {
-            angles.reverse();
-        }
-        if problem.task().repeats_first() {
-            angles.push(angles[0]);
-        }
-        let assemblies = vec![linkage.assembly(); angles.len()];
-        let (crank_deg, t1_at): (Vec<f64>, Vec<AssemblyMode>) =
-            unwrapped(problem, linkage, angles, assemblies);
-        candidates.extend(assess(problem, linkage, &crank_deg, &t1_at));
+        let is_known = |found: &Candidate, known: &Candidate| known.linkage == found.linkage;
+        candidates.extend(
+            judged(problem, answer, clockwise)
+                .filter(|found| !candidates.iter().any(|known| is_known(found, known))),
+        );
     }
     let best = outcome.islands.iter().copied().fold(f64::INFINITY, f64::min);
     let came =
@@ -97,17 +181,13 @@ fn found(context: Context<'_>, outcome: &DyadChainOutcome, clockwise: bool, limi
         Reason::TargetReached
     } else if hits >= REPEATS as u64 {
         Reason::Converged
-    } else if outcome.evaluations >= limit {
-        Reason::EvaluationLimit
     } else {
-        Reason::Stalled
+        Reason::EvaluationLimit
     };
-    let mut evaluations = context.cost(outcome.evaluations);
-    evaluations.positions *= POSITIONS;
     Found {
         repeats: (hits > 0).then(|| Repeats::new(outcome.islands.len() as u64, came(1e-6), hits)),
         candidates,
-        evaluations,
+        evaluations: context.cost(outcome.evaluations),
         reason,
         used: vec![PHASE.into()],
     }

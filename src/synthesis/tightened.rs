@@ -4,7 +4,7 @@
 use super::constants::tightened::{EVALUATIONS, FINISH, HOPELESS};
 use super::multistart::{Effort, judged, polish_until};
 use super::polish::{finish, reserve};
-use super::{Context, plan, sliders};
+use super::{Context, plan, several_loops, sliders};
 use crate::judge::assess::assess_again;
 use crate::judge::warm::start_at;
 use crate::mechanism::LinkageKind;
@@ -132,7 +132,9 @@ pub(super) fn fitted(
     }
     let within = context.of(tight).silent();
     if from.linkage.multi_loop().is_some() {
-        return out;
+        let (end, evaluations) = several_loops::refitted(within, from, evaluations.min(EVALUATIONS));
+        let candidate = end.and_then(|end| assess_again(context.problem, &end));
+        return Tightened { candidate, evaluations };
     }
     if from.linkage.kind() != LinkageKind::FourBar {
         let effort = (effort, evaluations.min(EVALUATIONS), enough);

@@ -3,7 +3,7 @@
 import { CycleChart } from "../../src/report/html/player/chart.mjs";
 import type { Cycle } from "../../src/report/html/player/cycle.mjs";
 import { Player } from "../../src/report/html/player/player.mjs";
-import { SliderStage } from "../../src/report/html/player/slider_stage.mjs";
+import { LoopsStage } from "../../src/report/html/player/loops.mjs";
 import { element, figure, shape } from "../../src/report/html/player/svg.mjs";
 import type { Linkage } from "./messages";
 
@@ -24,7 +24,7 @@ export class AnglesPlayer extends Player {
   declare followerKey: Element;
 
   constructor(stage: HTMLElement, charts: HTMLElement, options: object) {
-    super(stage, charts, { ...options, Stage: SliderStage } as never);
+    super(stage, charts, { ...options, Stage: LoopsStage } as never);
   }
 
   makeCharts(place: HTMLElement, unit: string | null) {

@@ -129,6 +129,7 @@ pub fn linkage(bytes: &[u8]) {
                 Linkage::InvertedSliderCrank(l) => {
                     Some(linkage_file::inverted_slider_crank_to_toml(&name, unit, l))
                 }
+                Linkage::MultiLoop(l) => Some(linkage_file::multi_loop_to_toml(&name, unit, l)),
                 Linkage::FourBar(_) | Linkage::Chain(_) => None,
             };
             if let Some(again) = again {

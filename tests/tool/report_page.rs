@@ -420,7 +420,7 @@ fn a_motion_is_driven_as_its_linkage_can_move() {
     assert_eq!(kind(&k18(), 0), "turn");
     assert_eq!(kind(&rocking(), 0), "through", "it passes a toggle");
     let mut one_branch = rocking();
-    one_branch.candidates[0].t1_at = vec![AssemblyMode::Plus; 3];
+    one_branch.candidates[0].t1_at = vec![AssemblyMode::Plus; 3].into();
     assert_eq!(kind(&one_branch, 0), "rock");
     let mut apart = k18();
     apart.candidates[0].linkage = linkage([0.0, 0.0], [10.0, 0.0], [1.0, 1.0, 1.0, 1.0, 1.0], 1, 1).into();
@@ -517,7 +517,7 @@ fn pages_for_the_test_in_a_browser_are_written() {
     let temporary = TempDir::new().expect("a folder");
     let place = std::env::var_os("LINKWRIGHT_WRITE_PAGES").map_or(temporary.path().to_owned(), Into::into);
     let mut one_branch = rocking();
-    one_branch.candidates[0].t1_at = vec![AssemblyMode::Plus; 3];
+    one_branch.candidates[0].t1_at = vec![AssemblyMode::Plus; 3].into();
     let mut apart = k18();
     apart.candidates.truncate(1);
     apart.candidates[0].linkage = linkage([0.0, 0.0], [10.0, 0.0], [1.0, 1.0, 1.0, 1.0, 1.0], 1, 1).into();

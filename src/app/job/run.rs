@@ -7,13 +7,13 @@ use crate::judge::rank::holds_an_exact;
 use crate::mechanism::Unit;
 use crate::numbers::optimise::population::PopulationError;
 use crate::record::digest::NotWritten;
-use crate::record::{Candidate, Front, Picks, ProblemRecord, Reason, Record};
+use crate::record::{BestOfKind, Candidate, Front, Picks, ProblemRecord, Reason, Record};
 use crate::synthesis::conflicts::Explained;
 use crate::synthesis::front::{self, FrontRequest};
 use crate::synthesis::keeper::Keeper;
 use crate::synthesis::picks;
 use crate::synthesis::{self, Budget, Observer, SearchOutcome, answers, conflicts, continuation, plan};
-use crate::synthesis::{errors_without, offered_cognates};
+use crate::synthesis::{errors_without, offered_cognates, several_loops};
 use crate::task::Problem;
 use crate::task::TaskError;
 use crate::task::forms::precision::{Refusal, precise};
@@ -177,6 +177,7 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     let explained = explained(inputs, &mut outcome)?;
     // After it: the list of candidates is final, and ranks refer to it.
     continuation::finish(&problem, &mut outcome);
+    let mut other_kind = offered_kind(inputs, &mut outcome);
     lap(&mut advice_s.conflicts);
     // After the conflicts: the search for relaxations may have met an acceptable design.
     errors_without::attach(inputs, &mut outcome);
@@ -184,7 +185,7 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     let mut beside = answers::beside(inputs, &mut outcome);
     lap(&mut advice_s.buildable);
     outcome.evaluations += picked.evaluations;
-    for candidate in outcome.candidates.iter_mut().chain(&mut beside.buildable) {
+    for candidate in outcome.candidates.iter_mut().chain(&mut beside.buildable).chain(&mut other_kind) {
         candidate.error.to_raw = to_raw(&problem, candidate);
     }
     outcome.reason = reached(&problem, &outcome);
@@ -195,11 +196,18 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     }
     lap(&mut advice_s.front);
     let beside_s = start.elapsed().as_secs_f64() - search_s;
+    let of_kinds =
+        match problem.spec().design.mechanism.len() > 1 && problem.spec().design.searches_several_loops() {
+            true => BestOfKind::of_all(outcome.candidates.iter().chain(&outcome.others)),
+            false => Vec::new(),
+        };
     let asked = job.clone().try_into()?;
     let found = Record::new(asked, outcome.used, outcome.reason, outcome.evaluations, outcome.candidates);
     let record = Record {
         family: beside.family,
         buildable: beside.buildable,
+        other_kind,
+        of_kinds,
         picks,
         front,
         conflict: explained.conflict,
@@ -249,6 +257,18 @@ fn reached(problem: &Problem, outcome: &SearchOutcome) -> Reason {
         return if came_back { Reason::Converged } else { Reason::Stalled };
     }
     outcome.reason
+}
+
+/// Returns an acceptable six-bar or eight-bar where four-bars alone are searched for, none is acceptable, and advice is asked for.
+fn offered_kind(context: synthesis::Context<'_>, outcome: &mut SearchOutcome) -> Option<Candidate> {
+    let solve = &context.problem.spec().solve;
+    let is_called_for = solve.advice && solve.method == Method::Auto && outcome.exact.is_none();
+    if !is_called_for || context.stopped() || outcome.candidates.iter().any(|c| c.accepted) {
+        return None;
+    }
+    let (offered, evaluations) = several_loops::beside_four_bars(context);
+    outcome.evaluations += evaluations;
+    offered
 }
 
 /// Returns the explanation why nothing is acceptable, if that is so and advice is asked for. If the budget leaves no

@@ -36,6 +36,8 @@ pub const UNCHECKED: &[(&str, Checked)] = &[
     ("repeats.followed", Checked::Bounded),
     ("repeats.basins", Checked::Bounded),
     ("conflict.among", Checked::Bounded),
+    ("of_kinds[]", Checked::Not),
+    ("of_kinds[].*", Checked::Bounded),
     ("relaxations[]", Checked::Not),
     ("relaxations[].set[]", Checked::Bounded),
     ("relaxations[].set[].to", Checked::Bounded),

@@ -1,16 +1,17 @@
 //! Verification of the other parts of a record: warnings, alternatives, the family, the buildable candidate.
 
 use super::Comparison;
+use super::comparison::RELATIVE;
 use crate::judge::cognates::{first_apart, has_error_of};
 use crate::judge::family::family;
 use crate::judge::symmetry::mirror_image_serves;
 use crate::judge::warnings::{is_serious, warnings};
-use crate::record::{Alternative, Candidate, Family, Record, Warning};
+use crate::record::{Alternative, BestOfKind, Candidate, Family, Record, Warning};
 
 impl Comparison<'_> {
     /// Checks everything in the record apart from the candidates' figures.
     pub(super) fn extras(&mut self, record: &Record) {
-        for candidate in record.candidates.iter().chain(&record.buildable) {
+        for candidate in record.candidates.iter().chain(&record.buildable).chain(&record.other_kind) {
             self.of_candidate(candidate.rank).annotations(candidate);
         }
         let words = |family: Option<&Family>| {
@@ -21,6 +22,47 @@ impl Comparison<'_> {
         self.same("family", words(record.family.as_ref()), words(found.as_ref()));
         if let Some(buildable) = &record.buildable {
             self.buildable(record, buildable);
+        }
+        if let Some(other) = &record.other_kind {
+            self.other_kind(record, other);
+        }
+        self.of_kinds(record);
+    }
+
+    /// Checks that a linkage of another kind is offered only where no candidate is accepted, and all of its figures.
+    fn other_kind(&mut self, record: &Record, other: &Candidate) {
+        if record.candidates.iter().any(|c| c.accepted) {
+            self.differ("other_kind", "there", "not called for: there is an accepted candidate");
+        }
+        if self.problem.spec().design.searches(other.linkage.kind()) {
+            self.differ("other_kind", other.linkage.kind(), "a kind that is searched for");
+        }
+        self.same("other_kind.rank", other.rank, 0);
+        self.same("other_kind.accepted", other.accepted, true);
+        let mut own = self.of_candidate(0);
+        own.candidate(other);
+    }
+
+    /// Checks that the best of each kind are kinds that are searched for, and no worse than the candidates.
+    fn of_kinds(&mut self, record: &Record) {
+        if !record.of_kinds.is_empty() && !record.compares_kinds() {
+            return self.differ("of_kinds", "there", "not called for: one kind is searched for");
+        }
+        for (i, best) in record.of_kinds.iter().enumerate() {
+            let mut own = self.under(&format!("of_kinds.{}.", best.kind));
+            let twice = record.of_kinds[..i].iter().any(|other| other.kind >= best.kind);
+            if twice || !own.problem.spec().design.searches(best.kind) {
+                own.differ("kind", best.kind, "each kind that is searched for once, the simplest first");
+            }
+            let mut of_kind = record.candidates.iter().filter(|c| c.linkage.kind() == best.kind);
+            match of_kind.next().map(BestOfKind::of) {
+                // Its figures are recomputed where it is listed.
+                Some(first) if first != *best => own.differ("rms", best.rms, first.rms),
+                _ => {}
+            }
+            if best.max < best.rms * (1.0 - RELATIVE) {
+                own.differ("max", best.max, format!("at least the rms error, {:e}", best.rms));
+            }
         }
     }
 

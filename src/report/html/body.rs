@@ -92,6 +92,8 @@ pub(super) fn header(record: &Record) -> Markup {
                 (paragraph(class, &format!("{}.", certificate_words::headline(certificate))))
             }
             @for sentence in facts.into_iter().flatten() { (paragraph("facts", &sentence)) }
+            @if let Some(text) = text_table::of_kinds(record) { (paragraph("facts", &text)) }
+            @if let Some(text) = price::other_kind(record) { (paragraph("lead", &text)) }
             @if let Some(text) = price::conflict(record) {
                 (paragraph("lead bad", &text))
                 @let changes = price::changes(record);

@@ -2,6 +2,7 @@
 
 use super::extras::{Shown, extras, first_key};
 use super::motion::Drive;
+use super::track::Track;
 use crate::mechanism::{AssemblyMode, CrankLinkage, MAX_MAGNITUDE};
 use crate::record::{Candidate, ProblemRecord, Record};
 use serde::Serialize;
@@ -62,6 +63,9 @@ struct Mechanism<'a> {
     /// The name for readers.
     name: String,
     linkage: &'a CrankLinkage,
+    /// The motion of a linkage of several loops.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    track: Option<Track>,
     drive: Drive,
     /// The angle from C -> D to the body's x axis, in degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -149,6 +153,7 @@ impl<'a> Mechanism<'a> {
             key,
             name,
             linkage,
+            track: linkage.multi_loop().map(Track::of),
             drive,
             frame_deg: None,
             crank_deg: there.iter().map(|i| crank_deg[*i]).collect(),

@@ -18,7 +18,7 @@ pub enum Shown {
 
 /// A linkage beside the ranked candidates.
 pub(super) struct Extra<'a> {
-    /// The key of its mechanism: `b`, `s`, `t`, or `f3` for a member of the front.
+    /// The key of its mechanism: `b`, `s`, `t`, `k`, or `f3` for a member of the front.
     pub(super) key: String,
     /// The name of its choice and of its row: `buildable`.
     pub(super) short: String,
@@ -40,6 +40,7 @@ fn pick_key(pick: Pick) -> &'static str {
         Pick::Buildable => "b",
         Pick::Smallest => "s",
         Pick::BestTransmission => "t",
+        Pick::OtherKind => "k",
     }
 }
 
@@ -52,6 +53,8 @@ pub(super) fn extras(record: &Record, shown: Shown) -> Vec<Extra<'_>> {
     let own = Pick::ALL.into_iter().filter_map(|pick| {
         let candidate = record.pick(pick).filter(|c| c.rank == 0)?;
         let (key, words) = (pick_key(pick).to_owned(), pick.words());
+        // Said by the kind that it has.
+        let words = if pick == Pick::OtherKind { candidate.type_name() } else { words };
         Some(Extra { key, short: words.to_owned(), name: format!("{words} answer"), candidate })
     });
     let mut extras: Vec<Extra<'_>> = own.collect();

@@ -42,6 +42,7 @@ mod proof;
 mod requirements;
 mod scatter;
 pub(super) mod table;
+mod track;
 
 pub use extras::Shown;
 pub use front::front_html;
@@ -58,10 +59,11 @@ pub(super) const PLAYER: [&str; 8] = [
     include_str!("player/chart.mjs"),
     include_str!("player/player.mjs"),
 ];
-/// The modules of the report alone: drawings of sliders, the body of a motion, the page.
-const REPORT: [&str; 4] = [
+/// The modules of the report alone: drawings of sliders and of several loops, the body of a motion, the page.
+const REPORT: [&str; 5] = [
     include_str!("player/guide.mjs"),
     include_str!("player/slider_stage.mjs"),
+    include_str!("player/loops.mjs"),
     include_str!("player/body.mjs"),
     include_str!("report.mjs"),
 ];

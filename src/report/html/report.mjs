@@ -3,7 +3,7 @@
 import { anglesOf, Bodies } from "./player/body.mjs";
 import { ErrorChart } from "./player/chart.mjs";
 import { Player } from "./player/player.mjs";
-import { SliderStage } from "./player/slider_stage.mjs";
+import { LoopsStage } from "./player/loops.mjs";
 import { element, figure } from "./player/svg.mjs";
 
 const data = JSON.parse(document.getElementById("data").textContent);
@@ -28,7 +28,7 @@ function begin() {
     unit: data.unit,
     target: data.target,
     transmissionMin: data.transmission_deg_min,
-    Stage: SliderStage,
+    Stage: LoopsStage,
     onPose: (stage, joints) => {
       bodies?.draw(stage, joints);
       turned?.at(stage.q);

@@ -16,6 +16,7 @@
 //! | `normal_equations` | products of columns, and their solution |
 //! | `order` | the projection of phases onto sequences in order |
 //! | `reach` | how far the joints reach over the motion, for limits on footprint and extent |
+//! | `refit` | fits of a known chain under other limits |
 //! | `rematch` | the assignment of points to phases by dynamic programming |
 //! | `request` | what is asked for, and the caller's side of a search that is running |
 //! | `rows` | rows of all residuals |
@@ -35,6 +36,7 @@ mod limits;
 mod normal_equations;
 mod order;
 mod reach;
+mod refit;
 mod rematch;
 mod request;
 mod rows;
@@ -45,5 +47,6 @@ mod trial;
 
 pub use answers::{DyadChainAnswer, DyadChainOutcome};
 pub use checkpoint::DyadChainState;
+pub use refit::refit;
 pub use request::{DyadChainLimits, DyadChainProgress, Request, Watch};
 pub use search::search;

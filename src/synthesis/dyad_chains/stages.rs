@@ -137,10 +137,14 @@ impl<'a> Setup<'a> {
 
     /// Fits an end once more, with limits that are held strictly.
     pub(super) fn last_fit(&self, bench: &mut Bench, end: &End) -> End {
+        self.strict_fit(bench, end, Ending { steps: LAST_STEPS, idle: IDLE_LAST })
+    }
+
+    /// Fits an end with limits that are held strictly.
+    pub(super) fn strict_fit(&self, bench: &mut Bench, end: &End, ending: Ending) -> End {
         let points = &self.target.all[end.variant.index()];
         let limits = self.limits(end.variant).strictly();
         let mut out = end.clone();
-        let ending = Ending { steps: LAST_STEPS, idle: IDLE_LAST };
         bench.fitter.fit(points, &limits, &mut out.state, ending, Linear::Known);
         out
     }

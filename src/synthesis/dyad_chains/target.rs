@@ -137,6 +137,26 @@ impl Target {
         self
     }
 
+    /// Returns a chain and its phases in the normalised coordinates of a variant that is not reversed.
+    pub(super) fn normalised(
+        &self,
+        chain: &DyadChain,
+        phases: &[f64],
+        variant: Variant,
+    ) -> (DyadChain, Vec<f64>) {
+        let [t, s, z] = chain.placement.numbers();
+        let placement = Placement {
+            origin: (t - self.centre) / self.radius,
+            ground: s / self.radius,
+            pointer: z / self.radius,
+        };
+        let own = DyadChain { placement, ..*chain };
+        match variant.mirrored {
+            true => (own.mirrored(), phases.iter().map(|phase| -phase).collect()),
+            false => (own, phases.to_vec()),
+        }
+    }
+
     /// Returns a chain of a variant in the coordinates of the target, and its phases in the order of the target's points.
     pub(super) fn restored(
         &self,

@@ -160,6 +160,8 @@ pub fn record(name: &str, path: TaskSpec) -> Record {
         termination: Termination { reason: Reason::Converged, reproducible: true },
         evaluations: Evaluations { objective: 12_345, positions: 222_210 },
         family: None,
+        other_kind: None,
+        of_kinds: Vec::new(),
         buildable: None,
         picks: None,
         front: None,

@@ -15,10 +15,10 @@ export class SliderStage extends Stage {
   }
 
   show(cycle, closed) {
-    const isGuided = "solve" in cycle.kernel;
+    const isGuided = "solve" in cycle.kernel && !("track" in cycle.kernel);
     /** The rail or the rod; null of a four-bar. */
     this.guide = isGuided ? guideOf(cycle.kernel, cycle.circuit()) : null;
-    const hasB = "B" in cycle.mechanism.linkage;
+    const hasB = "B" in cycle.mechanism.linkage || "track" in cycle.kernel;
     this.parts.pinB.classList.toggle("absent", !hasB);
     this.letters.B.classList.toggle("absent", !hasB);
     for (const name of ["rail", "block"]) this.parts[name].classList.toggle("absent", !isGuided);

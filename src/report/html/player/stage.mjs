@@ -33,7 +33,7 @@ function squared(box) {
 const extentOf = (box) => Math.max(box[2] - box[0], box[3] - box[1]);
 
 /** The direction away from neighbours, a unit vector. */
-function awayFrom(joint, neighbours) {
+export function awayFrom(joint, neighbours) {
   let [x, y] = [0, 0];
   for (const other of neighbours) {
     const apart = Math.hypot(joint[0] - other[0], joint[1] - other[1]) || 1;
@@ -162,7 +162,7 @@ export class Stage {
     const turn = (event) => {
       if (!this.cycle || !this.toPlane) return;
       const [x, y] = this.fromEvent(event);
-      const { A } = this.cycle.mechanism.linkage;
+      const [A] = this.pivots();
       this.options.onDrag((Math.atan2(y - A[1], x - A[0]) * 180) / Math.PI);
     };
     grip.addEventListener("pointerdown", (event) => {
