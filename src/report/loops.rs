@@ -12,6 +12,9 @@ use crate::mechanism::{Complex, MultiLoop};
 /// The colours of the plates, by dyad.
 const DYADS: [&str; 3] = [palette::COUPLER, palette::FOLLOWER, palette::SECOND];
 
+/// One in so many samples of a joint's faint path is drawn.
+const PIN_STEP: usize = 4;
+
 /// A linkage of several loops at one position.
 pub(super) struct Loops {
     linkage: MultiLoop,
@@ -50,7 +53,8 @@ impl Loops {
     pub(super) fn pin_paths(&self, canvas: &mut Canvas, view: &View, w: f64) {
         let attributes = outline(palette::FAINT, weighted(1.1 * w));
         for path in paths(&self.linkage) {
-            canvas.path(&view.spots(&path), true, &attributes);
+            let every: Vec<Complex> = path.into_iter().step_by(PIN_STEP).collect();
+            canvas.path(&view.spots(&every), true, &attributes);
         }
     }
 

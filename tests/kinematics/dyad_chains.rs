@@ -13,7 +13,7 @@ use linkwright::internals::numbers::arithmetic::streams::{Stream, below, stream,
 use std::f64::consts::{PI, TAU};
 
 /// Draws a chain of a kind, all of whose parameters are of the order of 1.
-fn drawn(kind: DyadChainKind, draws: &mut Stream) -> DyadChain {
+pub fn drawn(kind: DyadChainKind, draws: &mut Stream) -> DyadChain {
     let mut assembly = [AssemblyMode::Plus; MAX_DYADS];
     for mode in &mut assembly {
         if below(draws, 2) == 1 {

@@ -10,6 +10,7 @@ mod literature;
 mod loop_closure;
 mod mobility;
 mod motion;
+mod multi_loops;
 mod position;
 mod practicality;
 #[path = "../common/random.rs"]

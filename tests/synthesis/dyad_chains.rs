@@ -10,6 +10,9 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Mutex;
 
+/// Evaluations that suffice for the start of one island.
+const ONE_ISLAND: u64 = 26_000;
+
 fn shape(name: &str) -> Vec<Complex> {
     let file = root().join(format!("problems/literature/shapes/{name}.csv"));
     let text = std::fs::read_to_string(file).expect("it is there");
@@ -158,7 +161,7 @@ fn check(answer: &DyadChainAnswer, request: &Request<'_>) {
 fn the_figures_of_answers_are_those_of_an_independent_simulation() {
     for (name, closed, most) in [("square", true, 0.06), ("heart", true, 0.05), ("S", false, 0.01)] {
         let points = shape(name);
-        let request = request(&points, closed, 1);
+        let request = request(&points, closed, ONE_ISLAND);
         let found = found(&request);
         let best = &found.answers[0];
         assert!(best.accepted, "{name}");
@@ -180,7 +183,7 @@ fn a_search_has_the_same_digits_twice_and_on_any_number_of_threads() {
         pool.install(|| found(&request))
     };
     let first = on(1);
-    assert!(first.evaluations >= 20_000 && first.ends > 0);
+    assert!((10_000..=20_000).contains(&first.evaluations) && first.ends > 0);
     for threads in [1, 2, 5] {
         assert_eq!(on(threads), first, "{threads} threads");
     }
@@ -217,7 +220,7 @@ fn a_search_that_is_stopped_at_once_has_an_answer_within_the_limits_or_none() {
 #[test]
 fn fixed_pivots_stay_in_their_box() {
     let points = shape("letter-D");
-    let mut request = request(&points, true, 1);
+    let mut request = request(&points, true, ONE_ISLAND);
     request.limits.pivots_in = [Some([Complex::new(-1.0, -2.0), Complex::new(2.5, 0.0)]); 3];
     let found = found(&request);
     let best = &found.answers[0];
@@ -230,7 +233,7 @@ fn fixed_pivots_stay_in_their_box() {
 #[test]
 fn requests_that_cannot_be_used_have_no_outcome() {
     let points = shape("heart");
-    let usable = request(&points, true, 1);
+    let usable = request(&points, true, ONE_ISLAND);
     let with = |limits| Request { limits, ..usable };
     let limits = usable.limits;
     for refused in [

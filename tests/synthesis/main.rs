@@ -35,6 +35,7 @@ mod resuming;
 #[path = "../common/ladder.rs"]
 mod rungs;
 mod search;
+mod several_loops;
 mod slider_functions;
 mod sliders;
 mod snapping;

@@ -60,7 +60,7 @@ const STAGE_CHUNKS: [usize; 3] = [16, 4, 2];
 ///     counter_clockwise: false,
 ///     limits,
 ///     seed: 1,
-///     evaluations: 1,
+///     evaluations: 26_000,
 ///     enough: 0.0,
 ///     repeats: None,
 ///     answers: 1,
