@@ -7,6 +7,7 @@ use crate::judge::error::{StructuralError, distances_to_curve, rms};
 use crate::judge::loosen::design_limits;
 use crate::judge::referee::judge;
 use crate::judge::requirement::{Judged, at_least, at_most};
+use crate::judge::two_sided::two_sided;
 use crate::mechanism::{AssemblyMode, Complex, CrankLinkage, FourBar, InputRange, SliderCrank, point};
 use crate::record::{
     AngleErrorRecord, Assemblies, Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement,
@@ -133,6 +134,7 @@ pub fn assess_on_curve(
             angle: of_link.filter(|_| !is_function),
             output: of_link.filter(|_| is_function && !is_of_places),
             to_raw: None,
+            two_sided: None,
         },
         linkage_type: mobility.linkage_type,
         grashof_margin: mobility.margin,
@@ -218,6 +220,13 @@ pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorReco
     let points: Vec<Complex> = raw.iter().copied().map(point).collect();
     let (first, assembly) = (candidate.crank_deg.first()?, candidate.t1_at.first()?);
     distances_to_curve(&points, candidate.linkage, first.to_radians(), *assembly)
+}
+
+/// Computes the distances of a listed candidate that its search did not need: from the points as they were given, and between path
+/// and curve both ways.
+pub fn measure_beside(problem: &Problem, candidate: &mut Candidate) {
+    candidate.error.to_raw = to_raw(problem, candidate);
+    candidate.error.two_sided = two_sided(problem, candidate);
 }
 
 /// Returns the rows of the requirements and of the design's bounds, in the order of a record.

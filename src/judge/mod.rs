@@ -20,6 +20,7 @@
 //! | [`requirement`] | the judge's own arithmetic for each requirement: value, limit and whether it is met |
 //! | [`symmetry`] | symmetries of a target, and the images of a linkage under them |
 //! | [`trade_off`] | trade-offs between figures: dominance, the choice of the members of a front by hypervolume, and its knees |
+//! | [`two_sided`] | two-sided distance of a path and a coupler curve: of each from the other, whatever the timing |
 //! | [`unwrapped`] | crank angles unwrapped along the motion through the points |
 //! | [`verify`] | verification of a record: every figure and verdict is recomputed from its problem and its linkages |
 //! | [`warm`] | warm starts: a candidate as the start of another fit, of the same problem or of one whose limits have moved |
@@ -43,6 +44,7 @@ pub mod referee;
 mod requirement;
 pub mod symmetry;
 pub mod trade_off;
+pub mod two_sided;
 pub mod unwrapped;
 pub mod verify;
 pub mod warm;

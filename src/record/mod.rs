@@ -420,6 +420,20 @@ pub struct ErrorRecord {
     /// Where the target was smoothed or resampled: distances of the points as they were given to that same curve.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to_raw: Option<CurveErrorRecord>,
+    /// In a path: the distance of path and coupler curve from each other, over equal arcs of both, whatever the timing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub two_sided: Option<TwoSidedRecord>,
+}
+
+/// The two-sided distance of a path and the part of the coupler curve that draws it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct TwoSidedRecord {
+    /// The mean distance of the path from the curve, plus that of the curve from the path (the Chamfer sum).
+    pub mean: f64,
+    /// That over the root of the mean square of the points' distances from their centroid.
+    pub mean_over_radius: f64,
+    /// The largest distance of a point of either from the other.
+    pub worst: f64,
 }
 
 /// The errors of a body's angle over the poses that give one, or of the follower's over the pairs of a function.

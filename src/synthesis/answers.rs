@@ -4,7 +4,7 @@
 use super::buildable::buildable;
 use super::constants::buildable::{LEAST, SHARE};
 use super::{Context, SearchOutcome};
-use crate::judge::assess::{measure_curve, to_raw};
+use crate::judge::assess::{measure_beside, measure_curve};
 use crate::judge::costs::marginal;
 use crate::judge::family::family;
 use crate::judge::symmetry::mirror_image_serves;
@@ -35,7 +35,7 @@ pub(super) fn complete(problem: &Problem, candidate: &mut Candidate) {
     (candidate.rank, candidate.alternatives, candidate.certified) = (0, Vec::new(), None);
     measure_curve(problem, candidate);
     candidate.costs = marginal(problem, candidate);
-    candidate.error.to_raw = to_raw(problem, candidate);
+    measure_beside(problem, candidate);
     annotate(problem, candidate);
 }
 

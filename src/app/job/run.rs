@@ -1,7 +1,7 @@
 //! One run: from a problem to its record. It joins the other modules.
 
 use crate::files::problem_file::ProblemFile;
-use crate::judge::assess::to_raw;
+use crate::judge::assess::measure_beside;
 use crate::judge::certificate;
 use crate::judge::rank::holds_an_exact;
 use crate::mechanism::Unit;
@@ -186,7 +186,7 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     lap(&mut advice_s.buildable);
     outcome.evaluations += picked.evaluations;
     for candidate in outcome.candidates.iter_mut().chain(&mut beside.buildable).chain(&mut other_kind) {
-        candidate.error.to_raw = to_raw(&problem, candidate);
+        measure_beside(&problem, candidate);
     }
     outcome.reason = reached(&problem, &outcome);
     let mut picks = picked.picks.map(|picks| settled(&outcome.candidates, picks));

@@ -10,7 +10,7 @@ use crate::app::comparison::{NotCompared, compared};
 use crate::app::inputs::{Given, Run, Which};
 use crate::app::job::run::Job;
 use crate::files::name::{self, NameError};
-use crate::judge::assess::{assess, to_raw};
+use crate::judge::assess::{assess, measure_beside};
 use crate::judge::verify::{Mismatch, verify};
 use crate::mechanism::{AssemblyMode, CrankLinkage, LinkageKeys, NoLinkage};
 use crate::record::digest::ProblemError;
@@ -324,7 +324,7 @@ impl House {
         let mut candidates = if with_costs { priced(&problem, candidate) } else { vec![candidate] };
         for candidate in &mut candidates {
             annotate(&problem, candidate);
-            candidate.error.to_raw = to_raw(&problem, candidate);
+            measure_beside(&problem, candidate);
         }
         // No search ended with it: it was fitted under the hand, and that was ended by hand.
         let used = vec!["following-the-hand".into()];

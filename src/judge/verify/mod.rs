@@ -17,6 +17,7 @@ use crate::judge::costs::{marginal, weighted_rms};
 use crate::judge::error::{StructuralError, structural_error};
 use crate::judge::loosen::Demand;
 use crate::judge::rank::{compare, exact_objective};
+use crate::judge::two_sided::two_sided;
 use crate::mechanism::CrankLinkage;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::record::digest::{ProblemError, digest};
@@ -296,6 +297,18 @@ impl Comparison<'_> {
         self.angles("error.angle", (r.angle.as_ref(), f.angle.as_ref()), recorded);
         self.angles("error.output", (r.output.as_ref(), f.output.as_ref()), recorded);
         self.under("error.to_curve.").curve(&r.to_curve, &f.to_curve, n);
+        // Records of earlier versions do not have it.
+        if let Some(r) = &r.two_sided {
+            match two_sided(problem, recorded) {
+                Some(f) => {
+                    let mut part = self.under("error.two_sided.");
+                    part.number("mean", r.mean, f.mean, size);
+                    part.number("mean_over_radius", r.mean_over_radius, f.mean_over_radius, 1.0);
+                    part.number("worst", r.worst, f.worst, size);
+                }
+                None => self.same("error.two_sided", "there", "absent"),
+            }
+        }
         match (&r.to_raw, to_raw(problem, recorded)) {
             (Some(r), Some(f)) => {
                 let raw = problem.spec().task.raw.as_ref().map_or(0, |raw| raw.points.len());

@@ -34,6 +34,11 @@ impl Entry {
         for length in [&mut error.rms, &mut error.max] {
             *length *= factor;
         }
+        if let Some(both) = &mut error.two_sided {
+            for length in [&mut both.mean, &mut both.worst] {
+                *length *= factor;
+            }
+        }
         for curve in std::iter::once(&mut error.to_curve).chain(&mut error.to_raw) {
             curve.sum_sq *= factor * factor;
             curve.rms *= factor;

@@ -16,6 +16,16 @@ pub(super) fn mobility(record: &Record, c: &Candidate) -> Markup {
     let mut said = vec![of_type(c), range(c)];
     said.extend(table::motion(c).map(|motion| format!("Along the {noun}s: {motion}.")));
     said.push(transmission(c));
+    said.extend(c.error.two_sided.map(|both| {
+        let unit = words::unit_suffix(record);
+        format!(
+            "Path and curve, each from the other: {}{unit} in the mean of both ways together ({} % of the path's radius), {}{unit} at \
+             most.",
+            significant(both.mean, 3),
+            significant(100.0 * both.mean_over_radius, 3),
+            significant(both.worst, 3)
+        )
+    }));
     if c.defects.is_empty() {
         said.push(format!("No defect: the {noun}s are passed in order, on one circuit and on one branch."));
     }

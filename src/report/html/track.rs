@@ -22,8 +22,8 @@ pub(super) struct Track {
     links: Vec<Vec<usize>>,
     /// The dyad of each link, counted from 1; 0 of the crank.
     dyads: Vec<usize>,
-    /// Evenly over a turn from a crank angle of 0: x and y of each moving joint, the transmission angle nearest to flat (radians),
-    /// velocity and acceleration of P at a crank of one radian a second.
+    /// Evenly over a turn from a crank angle of 0: x and y of each moving joint, the transmission angle of each dyad
+    /// (radians), velocity and acceleration of P at a crank of one radian a second.
     rows: Vec<Vec<f64>>,
 }
 
@@ -48,7 +48,9 @@ impl Track {
                 Some(bodies) => linkage.moving(&bodies).flat_map(xy).map(rounded).collect(),
                 None => vec![0.0; 2 * joints.iter().filter(|joint| joint.body != GROUND).count()],
             };
-            row.push((linkage.transmission_at(angle) * 1e6).round() / 1e6);
+            let mut angles = linkage.transmissions_at(angle);
+            angles.resize(linkage.dyad_count(), 0.0);
+            row.extend(angles.into_iter().map(|angle| (angle * 1e6).round() / 1e6));
             let motion = chain.as_ref().map(|chain| chain.motion_at(angle, CrankMotion::steady(1.0)));
             let of_point = |list: &Vec<Option<Complex>>| list.last().copied().flatten();
             for list in [motion.as_ref().map(|m| &m.velocities), motion.as_ref().map(|m| &m.accelerations)] {

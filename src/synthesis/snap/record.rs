@@ -1,7 +1,7 @@
 //! The record of a snap, and a problem for a linkage that has none.
 
 use super::search::{Request, Snapped};
-use crate::judge::assess::{assess, to_raw};
+use crate::judge::assess::{assess, measure_beside};
 use crate::judge::costs::marginal;
 use crate::judge::family::family;
 use crate::judge::practicality::Sweep;
@@ -32,7 +32,7 @@ pub fn record(
     let mut candidates = snapped.candidates.clone();
     for candidate in &mut candidates {
         candidate.costs = marginal(problem, candidate);
-        candidate.error.to_raw = to_raw(problem, candidate);
+        measure_beside(problem, candidate);
         annotate(problem, candidate);
     }
     let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();

@@ -113,6 +113,7 @@ pub fn candidate(
             }),
             output: None,
             to_raw: None,
+            two_sided: None,
         },
         linkage_type: Some(mobility.linkage_type.expect("can be joined")),
         grashof_margin: mobility.grashof_margin,

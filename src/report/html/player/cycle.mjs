@@ -5,7 +5,7 @@ import { kernelOf, motionAt, otherKinds, positionAt, transmissionAngle } from ".
 
 /** @typedef {{key: string, name: string, linkage: import("./kinematics.mjs").Linkage, drive: import("./drive.mjs").Drive, crank_deg: number[], t1_at?: number[], frame_deg?: number, worst?: number, track?: any}} Mechanism track: of a linkage of several loops (loops.mjs) */
 /** @typedef {{number: number, target: [number, number], reached: [number, number] | null, error: number, crankDeg: number, place: number | null, tolerance: number | null}} PathPoint */
-/** @typedef {{q: number, joints: import("./kinematics.mjs").Joints, mu: number, v: [number, number] | null, a: [number, number] | null}} Sample */
+/** @typedef {{q: number, joints: import("./kinematics.mjs").Joints, mu: number, mus?: number[], v: [number, number] | null, a: [number, number] | null}} Sample */
 
 /** Positions over the motion: one a degree. */
 const SAMPLES = 360;
@@ -65,7 +65,8 @@ export class Cycle {
     if (!joints) return null;
     const motion = motionAt(this.kernel, joints, 1, 0);
     const mu = (transmissionAngle(this.kernel, joints) * 180) / Math.PI;
-    return { q, joints, mu, v: motion ? motion.vP : null, a: motion ? motion.aP : null };
+    const mus = this.kernel.mus?.(joints).map((angle) => (angle * 180) / Math.PI);
+    return { q, joints, mu, mus, v: motion ? motion.vP : null, a: motion ? motion.aP : null };
   }
 
   /** Samples over the whole motion, first and last included. @returns {(Sample | null)[]} */

@@ -11,7 +11,7 @@
 /** @typedef {{C: Point, D: Point, P: Point, u?: Point}} Joints u: the direction of a slider's coupler */
 /** @typedef {{A: Point, B: Point, a: number, b: number, c: number, couplerSq: number, halfDifference: number, z: Point}} FourBarKernel */
 /** @typedef {{vP: Point, aP: Point, omega3: number, omega4: number}} Rates */
-/** @typedef {{solve: (angle: number, t1: number) => Joints | null, mu: (joints: any) => number, rates: (joints: any, omega: number, alpha: number) => Rates | null}} OtherKernel what positionAt, transmissionAngle and motionAt ask of a kind beside the four-bar */
+/** @typedef {{solve: (angle: number, t1: number) => Joints | null, mus?: (joints: any) => number[], mu: (joints: any) => number, rates: (joints: any, omega: number, alpha: number) => Rates | null}} OtherKernel what positionAt, transmissionAngle and motionAt ask of a kind beside the four-bar */
 /** @typedef {FourBarKernel & Partial<OtherKernel>} Kernel */
 
 /** The kinds of linkages beside the four-bar: the kernel of a linkage, by its key `kind`. @type {Record<string, (linkage: any) => any>} */

@@ -7,7 +7,7 @@ import { awayFrom } from "./stage.mjs";
 import { pathThrough, px, setAll, shape } from "./svg.mjs";
 
 /** @typedef {[number, number]} Point */
-/** @typedef {{names: string[], pivots: Point[], links: number[][], dyads: number[], rows: number[][]}} Track names: of the joints, the fixed pivots first, P the last; links: indices of their joints; dyads: of each link, 0 the crank; rows: over a turn, x and y of each moving joint, the transmission angle, velocity and acceleration of P at one radian a second */
+/** @typedef {{names: string[], pivots: Point[], links: number[][], dyads: number[], rows: number[][]}} Track names: of the joints, the fixed pivots first, P the last; links: indices of their joints; dyads: of each link, 0 the crank; rows: over a turn, x and y of each moving joint, the transmission angle of each dyad, velocity and acceleration of P at one radian a second */
 
 /** The weights of four neighbours in periodic cubic interpolation, at a share of the step between the second and the third. */
 const weights = (f) => [
@@ -32,6 +32,8 @@ function rowAt(rows, angle) {
 export function trackKernel(track) {
   const { names, pivots, rows } = track;
   const moving = names.length - pivots.length;
+  const flat = (mu) => Math.min(mu, Math.PI - mu);
+  const mus = (joints) => joints.row.slice(2 * moving, -4);
   return {
     track,
     solve(angle) {
@@ -41,9 +43,11 @@ export function trackKernel(track) {
       const at = (name) => places[names.indexOf(name)];
       return { C: at("C"), D: at("D"), P: at("P"), places, row };
     },
-    mu: (joints) => joints.row[2 * moving],
+    mus,
+    /** The transmission angle nearest to flat. */
+    mu: (joints) => mus(joints).reduce((worst, mu) => (flat(mu) < flat(worst) ? mu : worst)),
     rates(joints, omega, alpha) {
-      const [vx, vy, ax, ay] = joints.row.slice(2 * moving + 1);
+      const [vx, vy, ax, ay] = joints.row.slice(-4);
       const along = (v, a) => a * omega * omega + v * alpha;
       return { vP: [vx * omega, vy * omega], aP: [along(vx, ax), along(vy, ay)], omega3: 0, omega4: 0 };
     },

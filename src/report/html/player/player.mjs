@@ -138,7 +138,11 @@ export class Player {
       low: 0,
       high: 180,
       onPick,
-      lines: [{ name: "mu", kind: "main", of: (sample) => sample.mu }],
+      lines: [
+        { name: "mu", kind: "main", of: (sample) => sample.mus?.[0] ?? sample.mu },
+        { name: "mu2", kind: "along-x", of: (sample) => sample.mus?.[1] ?? NaN },
+        { name: "mu3", kind: "along-y", of: (sample) => sample.mus?.[2] ?? NaN },
+      ],
       read: (sample) => `${figure(sample.mu, 4)}°`,
     });
     this.velocity = rates("Velocity of P", "v", 1, "s");
