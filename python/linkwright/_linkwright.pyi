@@ -367,7 +367,7 @@ def inverted_slider_crank(
 
 @final
 class Chain:
-    """A compound mechanism of a crank and stages, from :func:`linkwright.load`."""
+    """A compound mechanism of a crank and stages, from :func:`linkwright.load`; six-bars and eight-bars of results are chains."""
 
     @property
     def name(self) -> str:

@@ -55,7 +55,7 @@ class Candidate:
 
     @property
     def linkage(self) -> Any:
-        """The linkage, which can be moved: a :class:`FourBar`, or a :class:`SliderLinkage`."""
+        """The linkage, which can be moved: a :class:`FourBar`, a :class:`SliderLinkage`, or the :class:`Chain` of a six-bar."""
         return self.result._run.linkage(self.which)
 
     def svg(self) -> str:

@@ -1,15 +1,17 @@
 //! Chains: compound mechanisms, every point at many crank angles.
 
 use crate::arrays::{Input, Output};
-use crate::errors::guarded;
+use crate::errors::{guarded, refused};
 use linkwright::Chain as Kernel;
 use linkwright::Unit;
+use linkwright::internals::files::linkage_file::multi_loop_to_toml;
+use linkwright::internals::mechanism::MultiLoop;
 use linkwright::internals::mechanism::chain::PointId;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A compound mechanism of a crank and stages, from :func:`linkwright.load`.
+/// A compound mechanism of a crank and stages, from :func:`linkwright.load`; six-bars and eight-bars of results are chains.
 #[pyclass(frozen, module = "linkwright._linkwright")]
 pub struct Chain {
     pub name: String,
@@ -28,6 +30,13 @@ enum Asked {
 }
 
 impl Chain {
+    /// Returns the chain of a six-bar or an eight-bar.
+    pub fn of(name: String, unit: Option<Unit>, linkage: &MultiLoop) -> PyResult<Self> {
+        let text = multi_loop_to_toml(&name, unit, linkage);
+        let chain = linkage.to_chain().map_err(refused)?;
+        Ok(Chain { name, unit, chain, text })
+    }
+
     fn computed<'py>(
         &self,
         py: Python<'py>,

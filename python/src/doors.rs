@@ -21,7 +21,7 @@ use linkwright::internals::mechanism::analysis::{
     PositionMethod, Request as Analysis, analyze as analyze_four_bar, full_turn,
 };
 use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
-use linkwright::internals::mechanism::{Linkage, CrankLinkage};
+use linkwright::internals::mechanism::{CrankLinkage, Linkage};
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::analysis_csv::analysis_csv;
 use linkwright::internals::report::analysis_sheets::analysis_svg;
@@ -52,8 +52,9 @@ pub fn given(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<Given>
         let LinkageFile { name, unit, linkage } = linkage.get().file.clone();
         return Ok(Given::Linkage(Box::new(LinkageFile { name, unit, linkage: linkage.into() })));
     }
-    if subject.is_instance_of::<Chain>() {
-        return Err(refused("a chain is no linkage of one loop, and one is needed here"));
+    if let Ok(chain) = subject.cast::<Chain>() {
+        let Chain { name, text, .. } = chain.get();
+        return Ok(Given::Linkage(Box::new(linkage_file::parse_crank_linkage(name, text).map_err(refused)?)));
     }
     if let Ok(linkage) = subject.cast::<SliderLinkage>() {
         let SliderLinkage { name, unit, linkage } = linkage.get().clone();
@@ -114,6 +115,7 @@ fn of_file<'py>(py: Python<'py>, file: AnyLinkageFile, text: String) -> PyResult
         Linkage::FourBar(linkage) => {
             Bound::new(py, FourBar { file: LinkageFile { name, unit, linkage } })?.into_any()
         }
+        Linkage::MultiLoop(linkage) => Bound::new(py, Chain::of(name, unit, &linkage)?)?.into_any(),
         Linkage::Chain(chain) => Bound::new(py, Chain { name, unit, chain: *chain, text })?.into_any(),
         Linkage::SliderCrank(linkage) => {
             let linkage = CrankLinkage::SliderCrank(linkage);

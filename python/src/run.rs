@@ -1,5 +1,6 @@
 //! Runs: a record with everything that is derived from it.
 
+use crate::chain::Chain;
 use crate::errors::{bug, guarded, refused};
 use crate::linkage::FourBar;
 use crate::problem::{Problem, overrides};
@@ -282,6 +283,9 @@ impl Run {
             Ok(match candidate.linkage {
                 CrankLinkage::FourBar(linkage) => {
                     Bound::new(py, FourBar { file: LinkageFile { name, unit, linkage } })?.into_any()
+                }
+                CrankLinkage::MultiLoop(linkage) => {
+                    Bound::new(py, Chain::of(name, unit, &linkage)?)?.into_any()
                 }
                 linkage => Bound::new(py, SliderLinkage { name, unit, linkage })?.into_any(),
             })

@@ -10,7 +10,7 @@ use linkwright::internals::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, PointMotion};
 use linkwright::internals::mechanism::slider::motion::{SlidingMotion, motion};
 use linkwright::internals::mechanism::{
-    InvertedSliderCrank, InvertedSliderCrankParameters, LinkageError, LoopJoints, CrankLinkage, SliderCrank,
+    CrankLinkage, InvertedSliderCrank, InvertedSliderCrankParameters, LinkageError, LoopJoints, SliderCrank,
     SliderCrankParameters, xy,
 };
 use linkwright::{AssemblyMode, Complex, Unit};
@@ -60,7 +60,7 @@ impl SliderLinkage {
 
     fn moving(&self, angle: f64, input: CrankMotion) -> Option<SlidingMotion> {
         match &self.linkage {
-            CrankLinkage::FourBar(_) => None,
+            CrankLinkage::FourBar(_) | CrankLinkage::MultiLoop(_) => None,
             CrankLinkage::SliderCrank(linkage) => motion(linkage, angle, input).definite(),
             CrankLinkage::InvertedSliderCrank(linkage) => motion(linkage, angle, input).definite(),
         }
@@ -353,7 +353,12 @@ impl SliderLinkage {
         use std::hash::{Hash, Hasher};
         let mut hasher = std::collections::hash_map::DefaultHasher::new();
         // Equal numbers have equal bits, but for the two zeros.
-        (self.kind(), self.linkage.numbers().map(|x| (x + 0.0).to_bits()), self.t1()).hash(&mut hasher);
+        (
+            self.kind(),
+            self.linkage.numbers().into_iter().map(|x| (x + 0.0).to_bits()).collect::<Vec<u64>>(),
+            self.t1(),
+        )
+            .hash(&mut hasher);
         hasher.finish()
     }
 

@@ -11,9 +11,9 @@ use crate::judge::rank::exact_cost;
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{AssemblyMode, Complex, DyadChainKind, LinkageKind, MultiLoop};
-use crate::record::{Candidate, Evaluations, Reason, Repeats};
+use crate::record::{Candidate, Reason, Repeats};
 use crate::task::Problem;
-use crate::task::spec::{DirectionPolicy, Limits};
+use crate::task::spec::{DesignSpec, DirectionPolicy, Limits};
 use crate::task::without_several_loops::WithoutSeveralLoops;
 
 /// The name of the phase.
@@ -29,48 +29,38 @@ const REFIT_STEPS: usize = 60;
 /// The most answers that are judged, for each that is listed.
 const JUDGED: usize = 3;
 
-/// Searches for six-bars, then for eight-bars, for the path of a problem of four-bars that has a tolerance, with as many evaluations as
-/// are left of its budget, `OFFERED` at most each; returns the first acceptable one, annotated, and the evaluations.
-pub fn beside_four_bars(context: Context<'_>) -> (Option<Candidate>, Evaluations) {
-    let spec = context.problem.spec();
-    let mut spent = Evaluations::default();
-    let Some(tolerance) =
-        context.problem.task().tolerances().and_then(|all| all.iter().copied().reduce(f64::min))
-    else {
-        return (None, spent);
-    };
-    let is_dense = context.points() >= LEAST_POINTS;
-    if !is_dense
-        || !spec.design.is_of_four_bars()
+/// Searches for six-bars, then for eight-bars, for the path of a problem of four-bars that has a tolerance, with at most
+/// `OFFERED` evaluations each; returns the first acceptable one, annotated.
+pub fn beside_four_bars(context: Context<'_>) -> Option<Candidate> {
+    let problem = context.problem;
+    let (spec, task) = (problem.spec(), problem.task());
+    let tolerance = task.tolerances()?.iter().copied().reduce(f64::min)?;
+    // Bounds of a four-bar's own lengths say nothing of a six-bar.
+    let mut default = DesignSpec::default();
+    default.resolve(task);
+    if task.len() < LEAST_POINTS
+        || spec.design != default
         || spec.require.types.iter().any(|kind| !kind.input_turns_fully())
         || WithoutSeveralLoops::of(&spec.task, &spec.solve, &spec.require).is_some()
     {
-        return (None, spent);
+        return None;
     }
-    for kind in [LinkageKind::SixBar, LinkageKind::EightBar] {
+    [LinkageKind::SixBar, LinkageKind::EightBar].into_iter().find_map(|kind| {
         let mut asked = spec.clone();
         (asked.design.mechanism, asked.solve.candidates) = (vec![kind], 1);
         asked.require.types.clear();
-        let Ok(within) = context.problem.with(asked) else { continue };
-        let within = Context { keeper: None, ..context.of(&within) }.silent();
-        let limit = spec.solve.evaluations.min(OFFERED);
-        // Errors of a third of the tolerance in the mean are hardly anywhere beyond it.
-        let found = search_until(within, kind, limit, tolerance / 3.0);
-        spent += found.evaluations;
-        let best = found
-            .candidates
-            .into_iter()
-            .filter_map(|c| assess_again(context.problem, &c))
-            .find(|c| c.accepted);
-        if let Some(mut best) = best {
-            super::answers::complete(context.problem, &mut best);
-            return (Some(best), spent);
-        }
+        let within = problem.with(asked).ok()?;
+        let within = context.of(&within).silent();
         if context.stopped() {
-            break;
+            return None;
         }
-    }
-    (None, spent)
+        // Errors of a third of the tolerance in the mean are hardly anywhere beyond it.
+        let found = search_until(within, kind, spec.solve.evaluations.min(OFFERED), tolerance / 3.0);
+        let judged = found.candidates.iter().filter_map(|c| assess_again(problem, c));
+        let mut best = judged.into_iter().find(|c| c.accepted)?;
+        super::answers::complete(problem, &mut best);
+        Some(best)
+    })
 }
 
 /// Fits a candidate of several loops under the limits of a problem with at most so many evaluations; returns the end, judged, and the

@@ -177,7 +177,7 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     let explained = explained(inputs, &mut outcome)?;
     // After it: the list of candidates is final, and ranks refer to it.
     continuation::finish(&problem, &mut outcome);
-    let mut other_kind = offered_kind(inputs, &mut outcome);
+    let mut other_kind = offered_kind(inputs, &outcome);
     lap(&mut advice_s.conflicts);
     // After the conflicts: the search for relaxations may have met an acceptable design.
     errors_without::attach(inputs, &mut outcome);
@@ -260,15 +260,15 @@ fn reached(problem: &Problem, outcome: &SearchOutcome) -> Reason {
 }
 
 /// Returns an acceptable six-bar or eight-bar where four-bars alone are searched for, none is acceptable, and advice is asked for.
-fn offered_kind(context: synthesis::Context<'_>, outcome: &mut SearchOutcome) -> Option<Candidate> {
+///
+/// As those of the explanation, its evaluations are not those of the search.
+fn offered_kind(context: synthesis::Context<'_>, outcome: &SearchOutcome) -> Option<Candidate> {
     let solve = &context.problem.spec().solve;
     let is_called_for = solve.advice && solve.method == Method::Auto && outcome.exact.is_none();
     if !is_called_for || context.stopped() || outcome.candidates.iter().any(|c| c.accepted) {
         return None;
     }
-    let (offered, evaluations) = several_loops::beside_four_bars(context);
-    outcome.evaluations += evaluations;
-    offered
+    several_loops::beside_four_bars(context)
 }
 
 /// Returns the explanation why nothing is acceptable, if that is so and advice is asked for. If the budget leaves no

@@ -16,12 +16,17 @@ use crate::numbers::arithmetic::Complex;
 use crate::numbers::arithmetic::complex_lanes::ComplexLanes;
 use crate::numbers::arithmetic::sine::sin_cos;
 
+/// Steps of the secant method.
+const SECANTS: usize = 4;
+
 /// A joint or P at the phase at which it reaches farthest to one side.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
     body: usize,
     joint: Joint,
     phase: f64,
+    /// Whether that is an end of the motion.
+    is_end: bool,
     /// 0: x, 1: y.
     axis: usize,
     /// The coordinate.
@@ -64,6 +69,43 @@ fn position(now: &Trial, body: usize, joint: Joint, phase: f64) -> Complex {
     now.at.origin + now.at.ground * (o + v * place(now, joint))
 }
 
+/// Returns the derivative of a joint's coordinate by the phase.
+fn speed(now: &Trial, reach: &Reach, phase: f64) -> f64 {
+    let e = crank(phase);
+    let mut frames = Frames::<f64>::of(e);
+    let mut slopes = Slopes::<f64, 1>::of(e);
+    for dyad in 0..now.of.kind.dyads() {
+        frames.assemble(&now.of, dyad);
+        slopes.differentiate(&now.of, &Rates::NONE, dyad, &frames, 0);
+    }
+    let (o, v) = (number(slopes.origin[reach.body][0]), number(slopes.along[reach.body][0]));
+    let moved = now.at.ground * (o + v * place(now, reach.joint));
+    if reach.axis == 0 { moved.re } else { moved.im }
+}
+
+/// Returns a reach at the phase at which its coordinate is stationary, by the secant method; one at an end of the motion as it is.
+fn settled(now: &Trial, reach: Reach) -> Reach {
+    let near = 0.02 * Grid::phase(1);
+    if reach.is_end {
+        return reach;
+    }
+    let (mut last, mut phase) = (reach.phase - near, reach.phase);
+    let (mut before, mut here) = (speed(now, &reach, last), speed(now, &reach, phase));
+    for _ in 0..SECANTS {
+        if here == before || here == 0.0 {
+            break;
+        }
+        let next = phase - here * (phase - last) / (here - before);
+        if !((next - reach.phase).abs() <= Grid::phase(1)) {
+            return reach;
+        }
+        (last, before) = (phase, here);
+        (phase, here) = (next, speed(now, &reach, next));
+    }
+    let p = position(now, reach.body, reach.joint, phase);
+    Reach { phase, at: if reach.axis == 0 { p.re } else { p.im }, ..reach }
+}
+
 /// Returns the reaches of all joints to a side: along an axis (0: x, 1: y) in the sense of `sign`.
 fn reaches(now: &Trial, points: &Points, bodies: &Bodies, axis: usize, sign: f64) -> Vec<Reach> {
     let step = Grid::phase(1);
@@ -89,9 +131,10 @@ fn reaches(now: &Trial, points: &Points, bodies: &Bodies, axis: usize, sign: f64
         let inner = inner.filter(|phase| {
             used.is_none_or(|[from, to]| (phase - from).rem_euclid(std::f64::consts::TAU) <= to - from)
         });
-        let all = inner.into_iter().chain(ends).map(|phase| {
+        let all = inner.map(|phase| (phase, false)).into_iter().chain(ends.map(|phase| (phase, true)));
+        let all = all.map(|(phase, is_end)| {
             let p = position(now, body, joint, phase);
-            Reach { body, joint, phase, axis, at: if axis == 0 { p.re } else { p.im } }
+            Reach { body, joint, phase, is_end, axis, at: if axis == 0 { p.re } else { p.im } }
         });
         all.max_by(|one, other| (sign * one.at).total_cmp(&(sign * other.at)))
     };
@@ -119,14 +162,20 @@ pub(super) fn broken(now: &Trial, points: &Points, limits: &Limits, bodies: &Bod
                 };
                 let over = beyond(p, corners)[reach.axis];
                 if over != 0.0 {
-                    all.push(Broken { over: over.abs(), parts: vec![(*reach, over.signum())] });
+                    let reach = settled(now, *reach);
+                    let sign = over.signum();
+                    let limit = if sign > 0.0 { corners[1] } else { corners[0] };
+                    let limit = if reach.axis == 0 { limit.re } else { limit.im };
+                    all.push(Broken { over: sign * (reach.at - limit), parts: vec![(reach, sign)] });
                 }
             }
         }
     }
     if limits.extent.is_finite() {
         let farthest = sides.map(|(sign, reaches)| {
-            reaches.into_iter().max_by(|one, other| (sign * one.at).total_cmp(&(sign * other.at)))
+            let farthest =
+                reaches.into_iter().max_by(|one, other| (sign * one.at).total_cmp(&(sign * other.at)));
+            farthest.map(|reach| settled(now, reach))
         });
         if let [Some(left), Some(low), Some(right), Some(high)] = farthest {
             let (width, height) = (right.at - left.at, high.at - low.at);
