@@ -43,6 +43,9 @@ pub enum NoSubject {
     /// The problem of the record is invalid.
     #[error(transparent)]
     Problem(#[from] TaskError),
+    /// The linkage has several loops.
+    #[error("{0}: the lengths of six-bars and eight-bars are not brought to stock sizes yet")]
+    SeveralLoops(String),
     /// The candidate lacks a position.
     #[error("{0} has no position for each of the target's points")]
     Positions(String),
@@ -55,6 +58,14 @@ impl Subject {
     /// # Errors
     /// [`NoSubject`].
     pub fn of(given: Given) -> Result<Self, NoSubject> {
+        let subject = Subject::of_any(given)?;
+        match subject.candidate.linkage.multi_loop() {
+            Some(_) => Err(NoSubject::SeveralLoops(subject.label)),
+            None => Ok(subject),
+        }
+    }
+
+    fn of_any(given: Given) -> Result<Self, NoSubject> {
         match given {
             Given::Linkage(file) => {
                 let found = own_curve(&file.linkage);

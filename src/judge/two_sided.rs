@@ -48,7 +48,7 @@ fn in_equal_arcs(line: &[Complex]) -> Option<Vec<Complex>> {
         along.push(along[along.len() - 1] + (pair[1] - pair[0]).norm());
     }
     let whole = *along.last()?;
-    if !(whole > 0.0) || !whole.is_finite() {
+    if whole <= 0.0 || !whole.is_finite() {
         return None;
     }
     let mut i = 0;

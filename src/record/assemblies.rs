@@ -95,10 +95,11 @@ impl schemars::JsonSchema for Assemblies {
         "Assemblies".into()
     }
 
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let sign = generator.subschema_for::<AssemblyMode>();
         schemars::json_schema!({
             "type": "array",
-            "items": {"anyOf": [{"type": "integer"}, {"type": "array", "items": {"type": "integer"}}]}
+            "items": {"anyOf": [sign, {"type": "array", "items": sign, "minItems": 1}]}
         })
     }
 }

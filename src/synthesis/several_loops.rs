@@ -131,6 +131,8 @@ fn search_until(context: Context<'_>, kind: LinkageKind, limit: u64, enough: f64
         let sum_sq = now.best_rms * now.best_rms * points.len() as f64;
         (context.observer)(&Progress {
             best_sum_sq: Some(sum_sq).filter(|sum| sum.is_finite()),
+            // Its fits keep every limit but a tolerance.
+            accepted: !problem.task().has_tolerances(),
             ..Progress::of(PHASE, now.evaluations, limit)
         });
     };

@@ -144,7 +144,7 @@ fn of_several_loops(
             return toml.refuse(
                 &format!("design.{key}"),
                 message,
-                &format!("write {key} = [[xmin, xmax], [ymin, ymax]]"),
+                format!("write {key} = [[xmin, xmax], [ymin, ymax]]"),
             );
         }
     }

@@ -71,7 +71,7 @@ impl MultiLoop {
     pub fn to_dyad_chain(&self) -> Option<DyadChain> {
         let (origin, ground) = (self.crank_pivot, self.follower_pivot() - self.crank_pivot);
         let size = ground.norm();
-        if !(size > 0.0) {
+        if size <= 0.0 {
             return None;
         }
         let kind = self.kind;

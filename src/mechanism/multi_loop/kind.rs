@@ -33,7 +33,7 @@ impl Mechanism for MultiLoop {
     }
 
     fn pose_at(&self, crank_angle: f64) -> MechanismPose {
-        if !(crank_angle.abs() < MAX_MAGNITUDE) {
+        if crank_angle.is_nan() || crank_angle.abs() >= MAX_MAGNITUDE {
             return self.unknown(Status::NotFinite);
         }
         let Some(bodies) = self.bodies(crank_angle) else { return self.unknown(Status::Open) };

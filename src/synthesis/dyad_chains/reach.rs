@@ -96,7 +96,7 @@ fn settled(now: &Trial, reach: Reach) -> Reach {
             break;
         }
         let next = phase - here * (phase - last) / (here - before);
-        if !((next - reach.phase).abs() <= Grid::phase(1)) {
+        if next.is_nan() || (next - reach.phase).abs() > Grid::phase(1) {
             return reach;
         }
         (last, before) = (phase, here);
@@ -222,11 +222,11 @@ impl Reach {
         let part = |z: Complex| if self.axis == 0 { z.re } else { z.im };
         let turned = Complex::new(0.0, 1.0);
         let mut row = [0.0; MAX_COLUMNS];
-        for k in 0..count {
+        for (k, entry) in row.iter_mut().enumerate().take(count) {
             let (do_, dv) = (number(slopes.origin[self.body][k + 1]), number(slopes.along[self.body][k + 1]));
             // Only links move with the parameters.
             let moved = if self.body > CRANK { do_ + dv * xi } else { Complex::new(0.0, 0.0) };
-            row[k] = if is_traced { part(s * do_ + z * dv) } else { part(s * moved) };
+            *entry = if is_traced { part(s * do_ + z * dv) } else { part(s * moved) };
         }
         match self.joint {
             Joint::CrankPin => row[0] += part(s * v * xi),

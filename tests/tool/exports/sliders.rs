@@ -159,7 +159,10 @@ fn chains_of_one_loop_are_exported_as_what_they_are_and_others_are_refused() {
     for arguments in [&["export", leg.as_str(), "--format", "dxf"][..], &["build", &leg]] {
         let (code, _, complaints) = program(folder.path(), arguments);
         assert_eq!(code, 2, "{complaints}");
-        assert!(complaints.contains("has no plates") && complaints.contains("help:"), "{complaints}");
+        assert!(
+            complaints.contains("none of the linkages that are") && complaints.contains("help:"),
+            "{complaints}"
+        );
     }
 }
 
