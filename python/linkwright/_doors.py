@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     Path = Union[str, os.PathLike[str]]
     OfFourBars = Union["Result", "Candidate", FourBar, Path]
-    Subject = Union[OfFourBars, SliderLinkage]
+    Subject = Union[OfFourBars, SliderLinkage, Chain]
 
 from . import _linkwright
 from ._files import write

@@ -249,6 +249,30 @@ SLIDERS = [
 
 
 @pytest.mark.parametrize("linkage", SLIDERS, ids=lambda linkage: str(linkage.kind))
+def test_a_six_bar_of_a_result_is_a_chain_that_draws_the_path(root: Path) -> None:
+    points = np.loadtxt(root / "problems/shapes/heart.csv", delimiter=",", skiprows=1)[::3]
+    result = lw.synth(
+        lw.path(
+            points.tolist(),
+            closed=True,
+            design={"mechanism": "six-bar"},
+            require={"transmission_deg_min": 30},
+            solve={"evaluations": 40000, "candidates": 2},
+        )
+    )
+    assert lw.verify(result).ok
+    best = result.candidates[0]
+    assert best.accepted and best.data["linkage"]["kind"] == "six-bar"
+    chain = best.linkage
+    assert isinstance(chain, lw.Chain) and chain.names[-1] == "P" and "F2" in chain.names
+    at = chain.positions(np.radians(best.data["crank_deg"]))["P"]
+    errors = np.hypot(*(at - points).T)
+    assert math.sqrt(float(np.mean(errors**2))) == pytest.approx(best.error.rms, rel=1e-9)
+    assert lw.parse_linkage(chain.to_toml()).names == chain.names
+    again = lw.compare(chain, target=lw.path(points.tolist(), closed=True)).to_frame()
+    assert again["rms"].max() == pytest.approx(best.error.rms, rel=0.02)
+
+
 def test_lengths_of_a_linkage_with_a_slider_are_snapped(linkage: lw.SliderLinkage) -> None:
     snapped = lw.snap(linkage, grid=0.07, snap=["a", "b", "ground"])
     best = snapped.candidates[0].linkage

@@ -595,6 +595,8 @@ pub mod live {
     pub const EVALUATIONS: u64 = 120;
     /// Most evaluations of a first look.
     pub const FIRST_LOOK: u64 = 3000;
+    /// Evaluations of the first and of the second look for six-bars and eight-bars.
+    pub const FIRST_LOOKS_OF_SEVERAL_LOOPS: [u64; 2] = [24_000, 80_000];
 }
 
 /// Snapping; no benchmark chooses them.

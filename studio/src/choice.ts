@@ -11,11 +11,14 @@ const ANOTHER = 0.3;
 /** How unlike two linkages are, in parts of their size. */
 function unlike({ linkage: p }: Shown, { linkage: q }: Shown): number {
   if (p.kind !== q.kind || p.t1 !== q.t1 || p.t2 !== q.t2) return Infinity;
-  const numbers = ({ kind: _k, t1: _1, t2: _2, line_deg: _d, ...rest }: Linkage) =>
-    Object.values(rest).flat() as number[];
+  // Of several loops the numbers of the chain, in their order.
+  const flat = (value: unknown): number[] =>
+    typeof value === "number" ? [value] : typeof value === "object" && value ? Object.values(value).flatMap(flat) : [];
+  const numbers = ({ kind: _k, t1: _1, t2: _2, line_deg: _d, ...rest }: Linkage) => flat(rest);
   const [ps, qs] = [numbers(p), numbers(q)];
   const [[x, y], [x2, y2] = [x, y]] = pivotsOf(p);
-  const size = Math.max(Math.hypot(x2 - x, y2 - y), ...[p.a, p.b ?? 0, p.c ?? 0].map(Math.abs));
+  const size = Math.max(Math.hypot(x2 - x, y2 - y), ...[p.a ?? 0, p.b ?? 0, p.c ?? 0].map(Math.abs));
+  if (ps.length !== qs.length) return Infinity;
   const apart = Math.max(...ps.map((value, i) => Math.abs(value - qs[i]))) / (size || 1);
   // The direction of a rail, as the part of its length by which it leads elsewhere.
   return Math.max(apart, 2 * Math.abs(Math.sin((((p.line_deg ?? 0) - (q.line_deg ?? 0)) * Math.PI) / 360)));

@@ -2,13 +2,14 @@
 
 import { Cycle } from "../../src/report/html/player/cycle.mjs";
 import { belowPoint, guideEnds, guideOf, outlineAt } from "../../src/report/html/player/guide.mjs";
+import { hullOf } from "../../src/report/html/player/tracks.mjs";
 import { pathThrough, px, setAll, shape } from "../../src/report/html/player/svg.mjs";
 import { Machine } from "./machine";
 import { type Point, pivotsOf, type Shown } from "./messages";
 
 export type Toward = (p: Point) => Point;
 
-type Joints = { C: Point; D: Point; P: Point; u?: Point } | null;
+type Joints = { C: Point; D: Point; P: Point; u?: Point; places?: Point[] } | null;
 
 /** Of so many positions of a circuit one is looked at for the places that the links pass. */
 const PASSED = 16;
@@ -43,23 +44,29 @@ export class Moving {
 
   /** The rail of a slider, or the rod that runs through its block; null of a four-bar. */
   get guide() {
-    if (!this.shown.linkage.kind) return null;
+    if (!this.shown.linkage.kind || this.shown.track) return null;
     this.guiding ??= guideOf(this.cycle.kernel, this.circuit);
     return this.guiding;
   }
 
-  /** The bars at a position, and the plate that carries P, between joints; with a slider also its guide. */
-  bars(joints: NonNullable<Joints>): { bars: [Point, Point][]; plate: Point[]; along: Point[] } {
+  /** The bars at a position, and the plates between more joints, of which the last carries P; with a slider also its guide. */
+  bars(joints: NonNullable<Joints>): { bars: [Point, Point][]; plates: Point[][]; along: Point[] } {
     const { guide } = this;
+    const { track } = this.shown;
+    if (track && joints.places) {
+      const links = track.links.map((link) => link.map((i) => (joints.places as Point[])[i]));
+      const bars = links.filter((link) => link.length < 3) as [Point, Point][];
+      return { bars, plates: links.filter((link) => link.length > 2).map(hullOf) as Point[][], along: [] };
+    }
     const [A, B] = pivotsOf(this.shown.linkage);
     const { C, D, P } = joints;
     const crank: [Point, Point] = [A, C];
-    if (!guide) return { bars: [crank, [B, D], [C, D]], plate: [C, D, P], along: [] };
+    if (!guide) return { bars: [crank, [B, D], [C, D]], plates: [[C, D, P]], along: [] };
     const along = guideEnds(this.cycle.kernel, guide, joints) as Point[];
     // An arm holds a block at its pivot; the plate of a rod ends below P.
     const arm: [Point, Point][] = guide.moves ? [[B, D]] : [];
     const corner = guide.moves ? (belowPoint(this.cycle.kernel, joints as never) as Point) : D;
-    return { bars: [crank, ...arm], plate: [C, corner, P], along };
+    return { bars: [crank, ...arm], plates: [[C, corner, P]], along };
   }
 
   /** Places that the links pass. */
@@ -68,9 +75,9 @@ export class Moving {
       [0, 0.25, 0.5, 0.75, 1].map((part): Point => [p[0] + (q[0] - p[0]) * part, p[1] + (q[1] - p[1]) * part]);
     this.places ??= this.circuit.flatMap((joints, i) => {
       if (!joints || i % PASSED !== 0) return [];
-      const { bars, plate, along: ends } = this.bars(joints);
-      const [C, corner, P] = plate;
-      const lines = [...bars.slice(0, 2), [C, P], [corner, P], ...(ends.length > 0 ? [ends] : [])];
+      const { bars, plates, along: ends } = this.bars(joints);
+      const edges = plates.flatMap((plate) => plate.map((p, k) => [p, plate[(k + 1) % plate.length]]));
+      const lines = [...bars, ...edges, ...(ends.length > 0 ? [ends] : [])];
       return lines.flatMap(([from, to]) => along(from, to));
     });
     return this.places;
@@ -104,7 +111,7 @@ export class Moving {
 
   box(): number[] {
     const box = [Infinity, Infinity, -Infinity, -Infinity];
-    const joints = this.circuit.flatMap((j) => (j ? [j.C, j.D, j.P] : []));
+    const joints = this.circuit.flatMap((j) => (j ? (j.places ?? [j.C, j.D, j.P]) : []));
     for (const [x, y] of [...pivotsOf(this.shown.linkage), ...joints]) {
       box[0] = Math.min(box[0], x);
       box[1] = Math.min(box[1], y);
@@ -149,6 +156,8 @@ export class Figure {
   private edges = shape("path", { class: "bar-edge" });
   private bars = shape("path", { class: "bar" });
   private pins = Array.from({ length: 4 }, () => shape("circle", { class: "pin" }));
+  /** Those of further joints of a linkage of several loops. */
+  private further = shape("g");
   private point = shape("circle", { class: "tracer" });
   private machine: Machine | null;
   private moving: Moving | null = null;
@@ -166,7 +175,7 @@ export class Figure {
     setAll(this.point, { r: 5 * scale });
     const [under, over] = this.machine ? [[this.machine.under], [this.machine.over]] : [[], []];
     const links = [this.guide, this.coupler, this.edges, this.bars];
-    this.group.append(this.ground, this.curve, ...under, ...links, ...over, this.block, ...this.pins, this.point);
+    this.group.append(this.ground, this.curve, ...under, ...links, ...over, this.block, this.further, ...this.pins, this.point);
   }
 
   show(moving: Moving | null, toward: Toward) {
@@ -181,6 +190,9 @@ export class Figure {
     // A rail has no second pivot, and the foot on a rod is no pin.
     this.pins[1].classList.toggle("absent", pivots.length < 2);
     this.pins[3].classList.toggle("absent", moving.guide?.moves === true);
+    const count = moving.shown.track ? moving.shown.track.names.length : 0;
+    const pins = Array.from({ length: count }, () => shape("circle", { class: "pin", r: 3.6 * this.scale }));
+    this.further.replaceChildren(...pins);
     this.machine?.show(moving, toward);
   }
 
@@ -190,9 +202,12 @@ export class Figure {
     if (!moving || !joints) return;
     const [A, B = joints.D] = pivotsOf(moving.shown.linkage);
     const [a, b, c, d, p] = [A, B, joints.C, joints.D, joints.P].map(toward);
-    const { bars, plate, along } = moving.bars(joints);
+    const { bars, plates, along } = moving.bars(joints);
+    joints.places?.map(toward).forEach(([x, y], i) => {
+      setAll(this.further.children[i] as SVGElement, { cx: px(x), cy: px(y) });
+    });
     const lines = bars.map((ends) => pathThrough(ends.map(toward))).join("");
-    setAll(this.coupler, { d: `${pathThrough(plate.map(toward))}Z` });
+    setAll(this.coupler, { d: plates.map((plate) => `${pathThrough(plate.map(toward))}Z`).join("") });
     setAll(this.edges, { d: lines });
     setAll(this.bars, { d: lines });
     if (moving.guide) {

@@ -42,7 +42,7 @@ export class Machine {
   /** What lies under the links, and what lies over them. */
   readonly under = shape("g");
   readonly over = shape("g");
-  private stands = [stand(), stand()];
+  private stands = [stand(), stand(), stand(), stand()];
   private trail = Array.from({ length: PIECES }, (_, i) =>
     shape("path", { class: "trail", opacity: (0.75 * (i + 1)) / PIECES }),
   );
@@ -62,7 +62,9 @@ export class Machine {
       setAll(this.stands[i], { transform: `translate(${px(x)} ${px(y)})` });
     });
     const isAlone = pivots.length < 2;
-    this.stands[1].classList.toggle("absent", isAlone);
+    this.stands.forEach((one, i) => {
+      one.classList.toggle("absent", i >= pivots.length);
+    });
     this.letters[1].classList.toggle("absent", isAlone);
     const { drive } = moving.shown;
     const { cyclic, sense } = moving.cycle;

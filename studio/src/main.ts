@@ -457,7 +457,7 @@ class Page {
       if (this.wasPlaying) this.scene.play(true);
       this.wasPlaying = false;
     } else if (before) {
-      const { A } = shown.linkage;
+      const [A] = pivotsOf(shown.linkage);
       this.scene.turn((Math.atan2(before.C[1] - A[1], before.C[0] - A[0]) * 180) / Math.PI);
     }
     this.desk.changed(true);

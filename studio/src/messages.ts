@@ -34,11 +34,12 @@ export interface FourBar {
   t2: number;
 }
 
-/** The same linkage as a four-bar; null where it has a slider. */
+/** The same linkage as a four-bar; null of another kind. */
 export const fourBarOf = (linkage: Linkage) => (linkage.kind ? null : (linkage as FourBar));
 
-/** The fixed pivots of a linkage: a slider-crank has one. */
-export const pivotsOf = ({ A, B }: Linkage): Point[] => (B ? [A, B] : [A]);
+/** The fixed pivots of a linkage, A first: a slider-crank has one, a six-bar two or three. */
+export const pivotsOf = ({ A, B, chain }: Linkage): Point[] =>
+  chain ? (Object.values(chain.pivots) as Point[]) : ([A, B].filter((pivot) => pivot) as Point[]);
 
 /** xmin, ymin, xmax, ymax. */
 export type Box = [number, number, number, number];

@@ -46,6 +46,11 @@ const TYPES: Record<string, Task["types"]> = {
 };
 
 const KINDS_OF_LINKAGES: LinkageKind[] = ["four-bar", "slider-crank", "inverted-slider-crank"];
+/** The kinds of two values of the choice that stand for several. */
+const SEVERAL: Record<string, LinkageKind[]> = {
+  all: KINDS_OF_LINKAGES,
+  dyads: ["four-bar", "six-bar", "eight-bar"],
+};
 
 const SIDES = ["left", "bottom", "right", "top"];
 const BOXES = [
@@ -148,7 +153,7 @@ export function listenToRequirements({ now, change, ofKinds, shown, isWalker, st
   }
   on("kind", () => {
     const kind = select("kind").value;
-    ofKinds(kind === "all" ? KINDS_OF_LINKAGES : ([kind] as LinkageKind[]));
+    ofKinds(SEVERAL[kind] ?? ([kind] as LinkageKind[]));
     return null;
   });
   on("type", () => ({ ...now(), types: TYPES[select("type").value] ?? now().types }));
@@ -200,7 +205,8 @@ export function fillRequirements(task: Task) {
   for (const [id, key] of NUMBERS) set(id, task[key]);
   const key = Object.keys(TYPES).find((name) => TYPES[name].join() === task.types.join());
   const kinds = task.mechanism ?? ["four-bar"];
-  const kind = kinds.length === KINDS_OF_LINKAGES.length ? "all" : kinds.length > 1 ? "as-given" : kinds[0];
+  const several = Object.keys(SEVERAL).find((name) => SEVERAL[name].join() === kinds.join());
+  const kind = kinds.length > 1 ? (several ?? "as-given") : kinds[0];
   select("kind").value = kind;
   byId("kinds-given").hidden = kind !== "as-given";
   select("type").value = key ?? "as-given";

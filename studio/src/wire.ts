@@ -9,9 +9,9 @@ export type AngleOffset = "free" | "fixed" | "ground";
  */
 export type DriveKind = "turn" | "rock" | "through" | "none";
 /**
- * The kinds of linkages of one loop.
+ * The kinds of linkages that a crank drives.
  */
-export type LinkageKind = "four-bar" | "slider-crank" | "inverted-slider-crank";
+export type LinkageKind = "four-bar" | "slider-crank" | "inverted-slider-crank" | "six-bar" | "eight-bar";
 /**
  * The sense in which the follower turns while the crank turns as its angles are written.
  */
@@ -132,12 +132,16 @@ export interface Wire {
   Ask: Ask;
   Best: Best;
   BodyAsk: BodyAsk;
+  ChainKeys: ChainKeys;
   Change: Change;
   ClosingPolicy: ClosingPolicy;
   CompareAsk: CompareAsk;
   Compared: Compared;
   ComparedRow: ComparedRow;
   Counted: Counted;
+  CrankKeys: CrankKeys;
+  CrankLinkage: CrankLinkage;
+  CrankLinkage2: CrankLinkage2;
   Defect: Defect;
   Details: Details;
   DetailsAsk: DetailsAsk;
@@ -146,6 +150,7 @@ export interface Wire {
   Drawn: Drawn;
   Drive: Drive;
   DriveKind: DriveKind;
+  DyadKeys: DyadKeys;
   Expect: Expect;
   ExpectedCensus: ExpectedCensus;
   ExportAsk: ExportAsk;
@@ -165,17 +170,16 @@ export interface Wire {
   LeftOut: LeftOut;
   Limits: Limits;
   LinkageAsk: LinkageAsk;
-  LinkageType: LinkageType;
   LinkageKind: LinkageKind;
+  LinkageType: LinkageType;
   Method: Method;
   Objective: Objective;
   OfJob: OfJob;
-  CrankLinkage: CrankLinkage;
-  CrankLinkage2: CrankLinkage2;
   OnePolicy: OnePolicy;
   Opened: Opened;
   OrderPolicy: OrderPolicy;
   PinMap: PinMap;
+  PointKeys: PointKeys;
   Published: Published;
   RawPoints: RawPoints;
   Reading: Reading;
@@ -187,6 +191,7 @@ export interface Wire {
   Text: Text;
   TimingSpec: TimingSpec;
   Tool: Tool;
+  Track: Track;
   TransmissionOver: TransmissionOver;
   TypedValue: TypedValue;
   Unit: Unit;
@@ -294,6 +299,7 @@ export interface Shown {
    * The assembly (1 or -1) at each point.
    */
   t1_at: number[];
+  track?: Track;
   /**
    * The worst transmission angle, degrees from 0 to 90.
    */
@@ -334,12 +340,12 @@ export interface Drive {
  */
 export interface CrankLinkage2 {
   /**
-   * The fixed pivot of the crank.
+   * The fixed pivot of the crank, of every kind but those of several loops.
    *
    * @minItems 2
    * @maxItems 2
    */
-  A: [number, number];
+  A?: [number, number];
   /**
    * The fixed pivot of a four-bar's follower, or of the block of an inverted slider-crank.
    *
@@ -348,9 +354,9 @@ export interface CrankLinkage2 {
    */
   B?: [number, number];
   /**
-   * |AC|.
+   * |AC|, of every kind but those of several loops.
    */
-  a: number;
+  a?: number;
   /**
    * |CD| of a four-bar and of a slider-crank.
    */
@@ -359,6 +365,7 @@ export interface CrankLinkage2 {
    * |BD| of a four-bar.
    */
   c?: number;
+  chain?: ChainKeys;
   /**
    * P along the coupler from C, of kinds with a slider.
    */
@@ -395,11 +402,132 @@ export interface CrankLinkage2 {
    * The assembly: of a four-bar 1 where D lies left of the line from C to B; of a slider-crank where D is the one of two
    * places that lies further along the line; of an inverted one where the block is ahead of C along the rod.
    */
-  t1: number;
+  t1?: number;
   /**
    * The side of a four-bar's coupler point: 1 where P lies left of the line from C to D.
    */
   t2?: number;
+}
+/**
+ * The keys of `[chain]`: fixed pivots, a driven crank, dyads and points.
+ */
+export interface ChainKeys {
+  crank: CrankKeys;
+  /**
+   * Two links that meet in a new joint, each.
+   */
+  dyad: DyadKeys[];
+  /**
+   * Fixed pivots: a name and a point each.
+   */
+  pivots: {
+    /**
+     * @minItems 2
+     * @maxItems 2
+     */
+    [k: string]: [number, number];
+  };
+  /**
+   * Points on links.
+   */
+  point?: PointKeys[];
+  /**
+   * The name of the point whose path is drawn.
+   */
+  trace: string;
+}
+/**
+ * The driven crank.
+ */
+export interface CrankKeys {
+  /**
+   * The name of the joint that it carries.
+   */
+  joint: string;
+  /**
+   * From pivot to joint.
+   */
+  length: number;
+  /**
+   * The name of its fixed pivot.
+   */
+  pivot: string;
+}
+/**
+ * Two links from two points to a new joint.
+ */
+export interface DyadKeys {
+  /**
+   * The two points that it hangs on.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  from: [string, string];
+  /**
+   * The name of the new joint.
+   */
+  joint: string;
+  /**
+   * The two links.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  lengths: [number, number];
+  /**
+   * 1: the joint lies left of the line from the first point to the second; -1: right.
+   */
+  side: number;
+}
+/**
+ * A point on a link.
+ */
+export interface PointKeys {
+  /**
+   * Along the line from the first point to the second, and to its left, from the first point.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  at: [number, number];
+  /**
+   * The name of the new point.
+   */
+  name: string;
+  /**
+   * Two points of the link.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  on: [string, string];
+}
+/**
+ * The motion of a linkage of several loops.
+ */
+export interface Track {
+  /**
+   * The dyad of each link, counted from 1; 0 of the crank.
+   */
+  dyads: number[];
+  /**
+   * The joints of each moving link, as indices of their names.
+   */
+  links: number[][];
+  /**
+   * The names of the joints, the fixed pivots first, P the last.
+   */
+  names: string[];
+  /**
+   * The fixed pivots.
+   */
+  pivots: [number, number][];
+  /**
+   * Evenly over a turn from a crank angle of 0: x and y of each moving joint, the transmission angle of each dyad
+   * (radians), velocity and acceleration of P at a crank of one radian a second.
+   */
+  rows: number[][];
 }
 /**
  * How nearly the points of a body move on circles while it takes its poses. A fixed pivot is the centre of the circle.
@@ -723,12 +851,12 @@ export interface Published {
  */
 export interface CrankLinkage {
   /**
-   * The fixed pivot of the crank.
+   * The fixed pivot of the crank, of every kind but those of several loops.
    *
    * @minItems 2
    * @maxItems 2
    */
-  A: [number, number];
+  A?: [number, number];
   /**
    * The fixed pivot of a four-bar's follower, or of the block of an inverted slider-crank.
    *
@@ -737,9 +865,9 @@ export interface CrankLinkage {
    */
   B?: [number, number];
   /**
-   * |AC|.
+   * |AC|, of every kind but those of several loops.
    */
-  a: number;
+  a?: number;
   /**
    * |CD| of a four-bar and of a slider-crank.
    */
@@ -748,6 +876,7 @@ export interface CrankLinkage {
    * |BD| of a four-bar.
    */
   c?: number;
+  chain?: ChainKeys;
   /**
    * P along the coupler from C, of kinds with a slider.
    */
@@ -784,7 +913,7 @@ export interface CrankLinkage {
    * The assembly: of a four-bar 1 where D lies left of the line from C to B; of a slider-crank where D is the one of two
    * places that lies further along the line; of an inverted one where the block is ahead of C along the rod.
    */
-  t1: number;
+  t1?: number;
   /**
    * The side of a four-bar's coupler point: 1 where P lies left of the line from C to D.
    */

@@ -11,6 +11,9 @@ use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::judge::certificate::{Proof, Request};
 use linkwright::internals::judge::verify::{Checked, UNCHECKED, unchecked, verify};
 use linkwright::internals::record::Record;
+use linkwright::internals::synthesis::several_loops::beside_four_bars;
+use linkwright::internals::synthesis::{self, Budget};
+use linkwright::internals::task::Problem;
 use rayon::prelude::*;
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
@@ -67,7 +70,25 @@ fn records() -> Vec<(&'static str, Record)> {
                  1]\n[task.path.timing]\ncrank_deg = [0, 10, 20, 30, 40]\noffset = \"free\"\n[require]\ntype = \
                  [\"double-crank\"]\ntransmission_deg_min = 80\n[solve]\nmethod = \"differential-evolution\"\n\
                  objective = \"max-deviation\"\nevaluations = 2000\ncandidates = 2\n";
+    let kinds = [
+        ("design.mechanism", r#"["four-bar", "six-bar"]"#),
+        ("task.path.tolerance", "0.14"),
+        ("solve.evaluations", "60000"),
+        ("solve.candidates", "1"),
+    ];
+    let of_kinds = shipped("shapes/heart", &kinds);
+    assert!(of_kinds.of_kinds.len() == 2 && of_kinds.candidates[0].accepted);
+    let mut four_bars = kinds[1..].to_vec();
+    four_bars.extend([("design.mechanism", "four-bar"), ("solve.advice", "false")]);
+    let mut offered = shipped("shapes/heart", &four_bars);
+    let problem = Problem::new(offered.problem.resolved.clone()).expect("a problem");
+    let never = AtomicBool::new(false);
+    let budget = Budget { cancel: &never, deadline: None };
+    offered.other_kind = beside_four_bars(synthesis::Context::new(&problem, &budget));
+    assert!(offered.other_kind.is_some());
     vec![
+        ("of several kinds", of_kinds),
+        ("with another kind", offered),
         ("proved", certified(timed.clone(), 0.9, usize::MAX)),
         ("proved in part", certified(timed, 1e-3, 3)),
         ("a family", family),

@@ -6,7 +6,7 @@ use crate::files::problem_file::Expect;
 use crate::mechanism::{CrankLinkage, LinkageKeys, LinkageKind, LinkageType, Unit};
 use crate::record::{AngleErrorRecord, Candidate, ExactLinkage, ExactRecord, ProblemRecord, Relaxation};
 use crate::report::exact;
-use crate::report::html::Drive;
+use crate::report::html::{Drive, Track};
 use crate::task::Sense;
 use crate::task::requirement::InputPolicy;
 use crate::task::spec::{
@@ -255,6 +255,9 @@ pub struct Shown {
     pub number: Option<u64>,
     /// The linkage, as in records.
     pub linkage: CrankLinkage,
+    /// The motion of a linkage of several loops.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub track: Option<Track>,
     /// Its drive over its motion.
     pub drive: Drive,
     /// The crank angle at each target point, degrees.
@@ -321,6 +324,7 @@ impl Shown {
             rank: candidate.rank,
             number: None,
             linkage: candidate.linkage,
+            track: candidate.linkage.multi_loop().map(Track::of),
             drive: Drive::new(candidate.linkage, &candidate.crank_deg, &candidate.t1_at),
             crank_deg: candidate.crank_deg.clone(),
             t1_at: candidate.t1_at.iter().map(|t1| i64::from(*t1)).collect(),

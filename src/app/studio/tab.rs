@@ -14,7 +14,7 @@ use crate::mechanism::CrankLinkage;
 use crate::record::{Candidate, ExactRecord, Record, Relaxation};
 use crate::synthesis::continuation::Exact;
 use crate::synthesis::live::nine::Nine;
-use crate::synthesis::live::{Session, first_look};
+use crate::synthesis::live::{Session, first_look, second_look};
 use crate::synthesis::{Budget, HitsSoFar, Progress};
 use crate::task::spec::Method;
 use crate::task::{Problem, TaskKind};
@@ -355,9 +355,12 @@ fn searched(
         Err(e) => return tell(News::Failed(format!("no threads to search with: {e}"))),
     };
     if first {
-        let found = pool.install(|| first_look(problem, &Budget::new(cancel, None)));
-        if !found.is_empty() && !cancel.load(Ordering::Relaxed) {
-            tell(News::First(found));
+        let looks: [fn(&Problem, &Budget<'_>) -> Vec<Candidate>; 2] = [first_look, second_look];
+        for look in looks {
+            let found = pool.install(|| look(problem, &Budget::new(cancel, None)));
+            if !found.is_empty() && !cancel.load(Ordering::Relaxed) {
+                tell(News::First(found));
+            }
         }
     }
     // The time of the last word, and how often the best came back.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! page.rs         the file: policy, style, script, data; sections, paragraphs, lists
-//! data.rs         the data of the player, as JSON; motion.rs: the drive of each mechanism
+//! data.rs         the data of the player, as JSON; motion.rs: the drive of each mechanism; track.rs: samples of several loops
 //! body.rs         the page's sections in their order; a new section is a line there
 //! table.rs        candidates side by side
 //! candidate.rs    one candidate in words: mobility.rs, requirements.rs, dimensions.rs
@@ -47,13 +47,15 @@ mod track;
 pub use extras::Shown;
 pub use front::front_html;
 pub use motion::{Drive, DriveKind};
+pub use track::Track;
 
 /// The player's modules, each after those that it imports.
-pub(super) const PLAYER: [&str; 8] = [
+pub(super) const PLAYER: [&str; 9] = [
     include_str!("player/kinematics.mjs"),
     include_str!("player/sliders.mjs"),
     include_str!("player/drive.mjs"),
     include_str!("player/svg.mjs"),
+    include_str!("player/tracks.mjs"),
     include_str!("player/cycle.mjs"),
     include_str!("player/stage.mjs"),
     include_str!("player/chart.mjs"),

@@ -12,8 +12,8 @@ const SAMPLES: usize = 180;
 const DIGITS: i32 = 6;
 
 /// The motion of a linkage of several loops.
-#[derive(Serialize)]
-pub(super) struct Track {
+#[derive(Clone, Debug, Serialize, schemars::JsonSchema)]
+pub struct Track {
     /// The names of the joints, the fixed pivots first, P the last.
     names: Vec<&'static str>,
     /// The fixed pivots.
@@ -28,7 +28,8 @@ pub(super) struct Track {
 }
 
 impl Track {
-    pub(super) fn of(linkage: &MultiLoop) -> Self {
+    /// Returns the motion of a linkage.
+    pub fn of(linkage: &MultiLoop) -> Self {
         let joints = linkage.joints();
         let names: Vec<&'static str> = joints.iter().map(|joint| joint.name).collect();
         let links = linkage.links().into_iter().skip(1);

@@ -16,8 +16,9 @@ use crate::numbers::arithmetic::Complex;
 use crate::numbers::arithmetic::complex_lanes::ComplexLanes;
 use crate::numbers::arithmetic::sine::sin_cos;
 
-/// Steps of the secant method.
-const SECANTS: usize = 4;
+/// Rounds of regula falsi, and the part of the speeds beside an extreme at which it ends.
+const ROUNDS: usize = 24;
+const EQUAL: f64 = 1e-11;
 
 /// A joint or P at the phase at which it reaches farthest to one side.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +26,9 @@ pub(super) struct Reach {
     body: usize,
     joint: Joint,
     phase: f64,
-    /// Whether that is an end of the motion.
+    /// The phase of the grid beside it.
+    middle: f64,
+    /// Whether it is an end of the motion.
     is_end: bool,
     /// 0: x, 1: y.
     axis: usize,
@@ -83,24 +86,33 @@ fn speed(now: &Trial, reach: &Reach, phase: f64) -> f64 {
     if reach.axis == 0 { moved.re } else { moved.im }
 }
 
-/// Returns a reach at the phase at which its coordinate is stationary, by the secant method; one at an end of the motion as it is.
+/// Returns a reach at the phase at which its coordinate is stationary, by regula falsi between the phases of the grid beside it
+/// (with half weights for an end that stays, the Illinois rule); one at an end of the motion, or without a change of sign, as it
+/// is.
 fn settled(now: &Trial, reach: Reach) -> Reach {
-    let near = 0.02 * Grid::phase(1);
-    if reach.is_end {
+    let step = Grid::phase(1);
+    let [mut low, mut high] = [reach.middle - step, reach.middle + step];
+    let [mut at_low, mut at_high] = [low, high].map(|phase| speed(now, &reach, phase));
+    if reach.is_end || at_low * at_high >= 0.0 {
         return reach;
     }
-    let (mut last, mut phase) = (reach.phase - near, reach.phase);
-    let (mut before, mut here) = (speed(now, &reach, last), speed(now, &reach, phase));
-    for _ in 0..SECANTS {
-        if here == before || here == 0.0 {
+    let scale = EQUAL * (at_low.abs() + at_high.abs());
+    let (mut phase, mut side) = (reach.phase, 0);
+    for _ in 0..ROUNDS {
+        let here = speed(now, &reach, phase);
+        if here.abs() <= scale {
             break;
         }
-        let next = phase - here * (phase - last) / (here - before);
-        if next.is_nan() || (next - reach.phase).abs() > Grid::phase(1) {
-            return reach;
+        if here * at_high > 0.0 {
+            (high, at_high) = (phase, here);
+            at_low *= if side == 1 { 0.5 } else { 1.0 };
+            side = 1;
+        } else {
+            (low, at_low) = (phase, here);
+            at_high *= if side == -1 { 0.5 } else { 1.0 };
+            side = -1;
         }
-        (last, before) = (phase, here);
-        (phase, here) = (next, speed(now, &reach, next));
+        phase = (low * at_high - high * at_low) / (at_high - at_low);
     }
     let p = position(now, reach.body, reach.joint, phase);
     Reach { phase, at: if reach.axis == 0 { p.re } else { p.im }, ..reach }
@@ -125,16 +137,17 @@ fn reaches(now: &Trial, points: &Points, bodies: &Bodies, axis: usize, sign: f64
             let [before, here, after] = [(i + n - 1) % n, i, (i + 1) % n].map(|k| column[k]);
             let bend = before - 2.0 * here + after;
             let by = if bend == 0.0 { 0.0 } else { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) };
-            Grid::phase(i) + by * step
+            (Grid::phase(i), Grid::phase(i) + by * step)
         });
         let ends = used.into_iter().flatten();
-        let inner = inner.filter(|phase| {
+        let inner = inner.filter(|(_, phase)| {
             used.is_none_or(|[from, to]| (phase - from).rem_euclid(std::f64::consts::TAU) <= to - from)
         });
-        let all = inner.map(|phase| (phase, false)).into_iter().chain(ends.map(|phase| (phase, true)));
-        let all = all.map(|(phase, is_end)| {
+        let ends = ends.map(|phase| (phase, phase, true));
+        let all = inner.map(|(middle, phase)| (middle, phase, false)).into_iter().chain(ends);
+        let all = all.map(|(middle, phase, is_end)| {
             let p = position(now, body, joint, phase);
-            Reach { body, joint, phase, is_end, axis, at: if axis == 0 { p.re } else { p.im } }
+            Reach { body, joint, phase, middle, is_end, axis, at: if axis == 0 { p.re } else { p.im } }
         });
         all.max_by(|one, other| (sign * one.at).total_cmp(&(sign * other.at)))
     };

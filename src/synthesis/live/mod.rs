@@ -14,10 +14,12 @@ use crate::judge::rank::{compare, distinct, distinct_places};
 use crate::judge::warm::start_at;
 use crate::mechanism::CrankLinkage;
 use crate::record::{Assemblies, Candidate};
-use crate::synthesis::constants::live::{EFFORT, EVALUATIONS, FIRST_LOOK, FOLLOWING};
+use crate::synthesis::constants::live::{
+    EFFORT, EVALUATIONS, FIRST_LOOK, FIRST_LOOKS_OF_SEVERAL_LOOPS, FOLLOWING,
+};
 use crate::synthesis::multistart::{judged, polish};
 use crate::synthesis::nearest::nearest_positions;
-use crate::synthesis::{Budget, Context, plan, sliders};
+use crate::synthesis::{Budget, Context, plan, several_loops, sliders};
 use crate::task::Problem;
 
 /// The candidates that follow a target. Each has a number of its own, which it keeps while it follows.
@@ -115,8 +117,22 @@ impl Session {
 /// Runs a quick search of a problem: the search that every run begins with, with a small budget and without tolerances,
 /// whose polish takes long. Its answers are judged by the whole problem. Empty for a problem that cannot be searched.
 pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
+    let several = problem.spec().design.searches_several_loops();
+    look(problem, budget, if several { FIRST_LOOKS_OF_SEVERAL_LOOPS[0] } else { FIRST_LOOK })
+}
+
+/// Runs a second look for six-bars and eight-bars, whose whole search takes seconds; empty for a problem without them.
+pub fn second_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
+    match problem.spec().design.searches_several_loops() {
+        true => look(problem, budget, FIRST_LOOKS_OF_SEVERAL_LOOPS[1]),
+        false => Vec::new(),
+    }
+}
+
+/// Runs a search of at most so many evaluations.
+fn look(problem: &Problem, budget: &Budget<'_>, evaluations: u64) -> Vec<Candidate> {
     let mut spec = problem.spec().clone();
-    spec.solve.evaluations = spec.solve.evaluations.min(FIRST_LOOK);
+    spec.solve.evaluations = spec.solve.evaluations.min(evaluations);
     spec.task.tolerance = None;
     let Ok(easier) = Problem::new(spec) else { return Vec::new() };
     let Ok(outcome) = plan::search(Context::new(&easier, budget)) else { return Vec::new() };
@@ -134,6 +150,9 @@ fn followed(problem: &Problem, candidate: &Candidate, budget: &Budget<'_>) -> Op
         let fit = polish(context, start_at(problem, &placed)?, EFFORT, EVALUATIONS);
         let fitted = fit.end.and_then(|end| judged(problem, &end));
         (fitted, judged(problem, &start_at(problem, &placed)?))
+    } else if placed.linkage.multi_loop().is_some() {
+        let again = assess(problem, placed.linkage, &placed.crank_deg, &placed.t1_at);
+        (several_loops::refitted(context, &placed, EVALUATIONS).0, again)
     } else {
         let (fitted, _) = sliders::refit(context, &placed, (EFFORT, EVALUATIONS, 0.0));
         (fitted, sliders::unfitted(context, &placed))

@@ -1,9 +1,10 @@
 // A mechanism made ready to be shown: its kernel, where its points lie on the motion, its curves over the motion.
 
 import { inputAt, isCyclic, placeOf, rangeOf, usedOf } from "./drive.mjs";
-import { kernelOf, motionAt, otherKinds, positionAt, transmissionAngle } from "./kinematics.mjs";
+import { kernelOf, motionAt, positionAt, transmissionAngle } from "./kinematics.mjs";
+import { trackKernel } from "./tracks.mjs";
 
-/** @typedef {{key: string, name: string, linkage: import("./kinematics.mjs").Linkage, drive: import("./drive.mjs").Drive, crank_deg: number[], t1_at?: number[], frame_deg?: number, worst?: number, track?: any}} Mechanism track: of a linkage of several loops (loops.mjs) */
+/** @typedef {{key: string, name: string, linkage: import("./kinematics.mjs").Linkage, drive: import("./drive.mjs").Drive, crank_deg: number[], t1_at?: number[], frame_deg?: number, worst?: number, track?: any}} Mechanism track: of a linkage of several loops (tracks.mjs) */
 /** @typedef {{number: number, target: [number, number], reached: [number, number] | null, error: number, crankDeg: number, place: number | null, tolerance: number | null}} PathPoint */
 /** @typedef {{q: number, joints: import("./kinematics.mjs").Joints, mu: number, mus?: number[], v: [number, number] | null, a: [number, number] | null}} Sample */
 
@@ -18,7 +19,7 @@ export class Cycle {
   constructor(mechanism, target) {
     this.mechanism = mechanism;
     this.drive = mechanism.drive;
-    this.kernel = mechanism.track ? otherKinds.track(mechanism.track) : kernelOf(mechanism.linkage);
+    this.kernel = mechanism.track ? trackKernel(mechanism.track) : kernelOf(mechanism.linkage);
     this.range = rangeOf(this.drive);
     this.cyclic = isCyclic(this.drive);
     this.moves = this.drive.kind !== "none";
