@@ -145,8 +145,13 @@ fn row<'a>(table: &'a BTreeMap<String, Said>, key: &str) -> Option<(&'a str, Sai
 }
 
 /// The beginnings of keys of linkages beside the candidates.
-const BESIDE: [&str; 5] =
-    ["buildable.", "other_kind.", "picks.smallest.", "picks.best_transmission.", "front.members[].candidate."];
+const BESIDE: [&str; 5] = [
+    "buildable.",
+    "other_kind.",
+    "picks.smallest.",
+    "picks.best_transmission.",
+    "front.members[].candidate.",
+];
 
 /// A step into a document.
 #[derive(Clone, Debug)]
