@@ -16,6 +16,8 @@ use crate::numbers::arithmetic::Complex;
 use crate::numbers::arithmetic::complex_lanes::ComplexLanes;
 use crate::numbers::arithmetic::sine::sin_cos;
 
+/// Steps of the finer look between the phases of the grid beside an extreme.
+const FINER: usize = 16;
 /// Rounds of regula falsi, and the part of the speeds beside an extreme at which it ends.
 const ROUNDS: usize = 24;
 const EQUAL: f64 = 1e-11;
@@ -32,6 +34,8 @@ pub(super) struct Reach {
     is_end: bool,
     /// 0: x, 1: y.
     axis: usize,
+    /// 1: to the greatest coordinate, -1: to the least.
+    sign: f64,
     /// The coordinate.
     pub(super) at: f64,
 }
@@ -90,14 +94,21 @@ fn speed(now: &Trial, reach: &Reach, phase: f64) -> f64 {
 /// (with half weights for an end that stays, the Illinois rule); one at an end of the motion, or without a change of sign, as it
 /// is.
 fn settled(now: &Trial, reach: Reach) -> Reach {
-    let step = Grid::phase(1);
-    let [mut low, mut high] = [reach.middle - step, reach.middle + step];
+    // The motion may be quick here: a finer look at where the extreme lies.
+    let fine = 2.0 * Grid::phase(1) / FINER as f64;
+    let at = |i: usize| reach.middle - Grid::phase(1) + fine * i as f64;
+    let coordinate = |phase: f64| {
+        let p = position(now, reach.body, reach.joint, phase);
+        reach.sign * if reach.axis == 0 { p.re } else { p.im }
+    };
+    let best = (1..FINER).max_by(|i, j| coordinate(at(*i)).total_cmp(&coordinate(at(*j)))).unwrap_or(1);
+    let [mut low, mut high] = [at(best) - fine, at(best) + fine];
     let [mut at_low, mut at_high] = [low, high].map(|phase| speed(now, &reach, phase));
     if reach.is_end || at_low * at_high >= 0.0 {
         return reach;
     }
     let scale = EQUAL * (at_low.abs() + at_high.abs());
-    let (mut phase, mut side) = (reach.phase, 0);
+    let (mut phase, mut side) = (at(best), 0);
     for _ in 0..ROUNDS {
         let here = speed(now, &reach, phase);
         if here.abs() <= scale {
@@ -147,7 +158,7 @@ fn reaches(now: &Trial, points: &Points, bodies: &Bodies, axis: usize, sign: f64
         let all = inner.map(|(middle, phase)| (middle, phase, false)).into_iter().chain(ends);
         let all = all.map(|(middle, phase, is_end)| {
             let p = position(now, body, joint, phase);
-            Reach { body, joint, phase, middle, is_end, axis, at: if axis == 0 { p.re } else { p.im } }
+            Reach { body, joint, phase, middle, is_end, axis, sign, at: if axis == 0 { p.re } else { p.im } }
         });
         all.max_by(|one, other| (sign * one.at).total_cmp(&(sign * other.at)))
     };
