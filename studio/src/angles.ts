@@ -2,8 +2,8 @@
 
 import { CycleChart } from "../../src/report/html/player/chart.mjs";
 import type { Cycle } from "../../src/report/html/player/cycle.mjs";
-import { Player } from "../../src/report/html/player/player.mjs";
 import { LoopsStage } from "../../src/report/html/player/loops.mjs";
+import { Player } from "../../src/report/html/player/player.mjs";
 import { element, figure, shape } from "../../src/report/html/player/svg.mjs";
 import type { Linkage } from "./messages";
 

@@ -2,8 +2,8 @@
 
 import { Cycle } from "../../src/report/html/player/cycle.mjs";
 import { belowPoint, guideEnds, guideOf, outlineAt } from "../../src/report/html/player/guide.mjs";
-import { hullOf } from "../../src/report/html/player/tracks.mjs";
 import { pathThrough, px, setAll, shape } from "../../src/report/html/player/svg.mjs";
+import { hullOf } from "../../src/report/html/player/tracks.mjs";
 import { Machine } from "./machine";
 import { type Point, pivotsOf, type Shown } from "./messages";
 
@@ -175,7 +175,17 @@ export class Figure {
     setAll(this.point, { r: 5 * scale });
     const [under, over] = this.machine ? [[this.machine.under], [this.machine.over]] : [[], []];
     const links = [this.guide, this.coupler, this.edges, this.bars];
-    this.group.append(this.ground, this.curve, ...under, ...links, ...over, this.block, this.further, ...this.pins, this.point);
+    this.group.append(
+      this.ground,
+      this.curve,
+      ...under,
+      ...links,
+      ...over,
+      this.block,
+      this.further,
+      ...this.pins,
+      this.point,
+    );
   }
 
   show(moving: Moving | null, toward: Toward) {

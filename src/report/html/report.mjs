@@ -2,8 +2,8 @@
 
 import { anglesOf, Bodies } from "./player/body.mjs";
 import { ErrorChart } from "./player/chart.mjs";
-import { Player } from "./player/player.mjs";
 import { LoopsStage } from "./player/loops.mjs";
+import { Player } from "./player/player.mjs";
 import { element, figure } from "./player/svg.mjs";
 
 const data = JSON.parse(document.getElementById("data").textContent);
