@@ -191,6 +191,7 @@ impl Comparison<'_> {
         else {
             return false;
         };
+        self.alike("t1_at", &recorded.t1_at, &found.t1_at);
         let word = |there: bool| if there { "there" } else { "absent" };
         self.same("frame_deg", word(recorded.frame_deg.is_some()), word(found.frame_deg.is_some()));
         self.offsets(recorded, &found);
