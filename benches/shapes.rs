@@ -130,11 +130,12 @@ fn picture(out: &mut String, [x, y]: [f64; 2], points: &[Complex], answer: &Answ
         let at = (p - middle) * scale;
         format!("{:.1} {:.1}", x + 0.5 * SIDE + at.re, y + 0.5 * SIDE - at.im)
     };
-    for p in points {
-        let at = spot(*p);
-        let (cx, cy) = at.split_once(' ').expect("two numbers");
-        let _ = write!(out, "<circle cx=\"{cx}\" cy=\"{cy}\" r=\"1.3\" fill=\"#d55e00\"/>");
-    }
+    let dots: Vec<String> = points.iter().map(|p| format!("M{}h0", spot(*p))).collect();
+    let _ = write!(
+        out,
+        "<path d=\"{}\" stroke=\"#d55e00\" stroke-width=\"2.6\" stroke-linecap=\"round\"/>",
+        dots.concat()
+    );
     let Some(best) = &answer.best else { return };
     let (first, last) = (best.crank_deg[0], best.crank_deg[best.crank_deg.len() - 1]);
     let closed = (last - first).abs() > 300.0;
