@@ -122,7 +122,7 @@ fn cells(answer: &Answer, radius: f64) -> String {
 }
 
 /// Draws a shape and, over it, the curve of an answer, in a square.
-fn picture(out: &mut String, [x, y]: [f64; 2], points: &[Complex], answer: &Answer) {
+fn picture(out: &mut String, [x, y]: [f64; 2], (points, closed): (&[Complex], bool), answer: &Answer) {
     let [low, high] = bounding_box(points.iter().copied());
     let scale = 0.8 * SIDE / (high - low).re.max((high - low).im);
     let middle = (low + high) * 0.5;
@@ -138,7 +138,6 @@ fn picture(out: &mut String, [x, y]: [f64; 2], points: &[Complex], answer: &Answ
     );
     let Some(best) = &answer.best else { return };
     let (first, last) = (best.crank_deg[0], best.crank_deg[best.crank_deg.len() - 1]);
-    let closed = (last - first).abs() > 300.0;
     let span = if closed { TAU } else { (last - first).to_radians() };
     let on = |i: usize| {
         let angle = first.to_radians() + span * i as f64 / SAMPLES as f64;
@@ -167,7 +166,8 @@ fn main() {
             let points: Vec<Complex> =
                 record.problem.resolved.task.points.iter().copied().map(point).collect();
             cells_of_kinds.push(cells(&found, radius(&points)));
-            picture(&mut drawn, [70.0 + SIDE * column as f64, 24.0 + SIDE * row], &points, &found);
+            let place = [70.0 + SIDE * column as f64, 24.0 + SIDE * row];
+            picture(&mut drawn, place, (&points, record.problem.resolved.task.closed), &found);
             if name(&file).starts_with("letter-") && kind == LinkageKind::SixBar {
                 letters += 1;
                 both_ways.extend(found.best.and_then(|best| Some(best.error.two_sided?.mean_over_radius)));
@@ -201,7 +201,7 @@ fn main() {
         let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("results");
         let text = format!(
             "# Shapes and letters\n\nWritten by `cargo bench --bench shapes -- --write`: {} evaluations of each search, {} s at \
-             most, {} thread. Errors are parts of the rms radius of the shape; see the bench for their meaning and for the \
+             most, {} thread(s). Errors are parts of the rms radius of the shape; see the bench for their meaning and for the \
              limits.\n\n{said}\n\n{table}\n![The shapes, and the curves of the three kinds](shapes.svg)\n",
             options.evaluations, options.time_limit_s, options.threads
         );

@@ -115,6 +115,8 @@ fn it_comes_back_from_files_records_and_the_unknowns_of_a_search() {
         let text = any_to_toml("it", None, &any);
         let read = parse_crank_linkage("it.toml", &text).expect("it was written").linkage;
         assert_eq!(read, any, "{text}");
+        assert_eq!(linkage.with_numbers(&linkage.numbers()), Some(linkage));
+        assert_eq!(linkage.with_numbers(&linkage.numbers()[1..]), None);
         let unknowns = linkage.to_dyad_chain().expect("it turns fully");
         let of = unknowns.proportions();
         for i in 0..9 {

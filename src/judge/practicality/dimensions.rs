@@ -5,6 +5,7 @@
 //! | four-bar | Ax, Ay, Bx, By, a, b, c, d, e; coupler_x and coupler_y in place of d and e where P lies nearly on the line C-D |
 //! | slider-crank | Ax, Ay, a, b, rail_from, rail_to, coupler_x, coupler_y |
 //! | inverted slider-crank | Ax, Ay, Bx, By, a, offset, coupler_x, coupler_y |
+//! | six-bar, eight-bar | Ax, Ay, a, Bx, By, b, c; of each further dyad X2x, X2y, Y2x, Y2y, X2F2, Y2F2; Px, Py, each on its own link |
 //!
 //! rail_from and rail_to move the line at the least and at the greatest place of D that is looked at to its left, the other
 //! end held: with L between these places y_1 and y_2, a point at y moves by (y_2 - y)/L and by (y - y_1)/L. Errors of the
@@ -14,12 +15,13 @@ use super::sensitivity::At;
 use crate::mechanism::four_bar::gradient::{follower_gradient, ground_gradient, shape_gradient};
 use crate::mechanism::slider::SliderColumn;
 use crate::mechanism::{
-    Complex, CrankLinkage, FourBar, InvertedSliderCrank, SliderCrank, SliderLinkage, cross, dot, turned,
+    Complex, CrankLinkage, FourBar, InvertedSliderCrank, MultiLoop, SliderCrank, SliderLinkage, cross, dot,
+    turned,
 };
 use crate::task::Output;
 
-/// The largest number of dimensions.
-pub(super) const MOST: usize = 9;
+/// The largest number of dimensions: those of an eight-bar.
+pub(super) const MOST: usize = 21;
 
 /// The derivatives by the dimensions, zero beyond their number, and by the crank angle.
 pub(super) type Columns = ([Complex; MOST], Complex);
@@ -44,14 +46,63 @@ pub(super) trait Dimensions: Sync {
     fn by_ground(&self, shifts: &[Complex]) -> Option<Complex>;
 }
 
-/// Returns the dimensions of a linkage for its path at some positions; `None` of one of several loops.
-pub(super) fn of_path(linkage: &CrankLinkage, positions: &[At]) -> Option<Box<dyn Dimensions>> {
-    Some(match *linkage {
+/// Returns the dimensions of a linkage for its path at some positions.
+pub(super) fn of_path(linkage: &CrankLinkage, positions: &[At]) -> Box<dyn Dimensions> {
+    match *linkage {
         CrankLinkage::FourBar(linkage) => Box::new(OfFourBar { linkage, flat: is_flat(&linkage) }),
         CrankLinkage::SliderCrank(linkage) => Box::new(OfSliderCrank::new(linkage, positions)),
         CrankLinkage::InvertedSliderCrank(linkage) => Box::new(linkage),
-        CrankLinkage::MultiLoop(_) => return None,
-    })
+        CrankLinkage::MultiLoop(linkage) => Box::new(linkage),
+    }
+}
+
+/// Returns columns with zeros beyond them.
+fn padded<const N: usize>(columns: [Complex; N]) -> [Complex; MOST] {
+    let mut all = [ZERO; MOST];
+    all[..N].copy_from_slice(&columns);
+    all
+}
+
+/// Part of the longest link by which a dimension is moved either way for its derivative.
+const STEP: f64 = 1e-6;
+
+/// The derivatives are central differences.
+impl Dimensions for MultiLoop {
+    fn names(&self) -> Vec<&'static str> {
+        const FURTHER: [[&str; 6]; 2] =
+            [["X2x", "X2y", "Y2x", "Y2y", "X2F2", "Y2F2"], ["X3x", "X3y", "Y3x", "Y3y", "X3F3", "Y3F3"]];
+        let further = FURTHER.iter().take(self.dyad_count() - 1).flatten().copied();
+        let first = ["Ax", "Ay", "a", "Bx", "By", "b", "c"].into_iter();
+        first.chain(further).chain(["Px", "Py"]).collect()
+    }
+
+    fn columns(&self, at: &At) -> Option<Columns> {
+        let linkage = self.with_assembly(at.assembly);
+        let (numbers, step) = (linkage.numbers(), STEP * linkage.longest());
+        let mut columns = [ZERO; MOST];
+        for (k, column) in columns.iter_mut().enumerate().take(numbers.len()) {
+            let moved = |by: f64| {
+                let mut numbers = numbers.clone();
+                numbers[k] += by;
+                linkage.with_numbers(&numbers)?.point_at(at.crank_angle)
+            };
+            *column = (moved(step)? - moved(-step)?) / (2.0 * step);
+        }
+        let turned = |by: f64| linkage.point_at(at.crank_angle + by);
+        Some((columns, (turned(STEP)? - turned(-STEP)?) / (2.0 * STEP)))
+    }
+
+    fn of_ground(&self) -> [f64; MOST] {
+        let [ax, ay, bx, by] = ground_gradient(self.crank_pivot(), self.follower_pivot());
+        let mut all = [0.0; MOST];
+        (all[0], all[1], all[3], all[4]) = (ax, ay, bx, by);
+        all
+    }
+
+    fn by_ground(&self, shifts: &[Complex]) -> Option<Complex> {
+        let ground = self.follower_pivot() - self.crank_pivot();
+        Some((shifts[3] * ground.re + shifts[4] * ground.im) / ground.norm())
+    }
 }
 
 /// Returns whether the coupler of a four-bar is measured by coupler_x and coupler_y.
@@ -87,11 +138,12 @@ impl Dimensions for OfFourBar {
     fn columns(&self, at: &At) -> Option<Columns> {
         let linkage = &self.linkage;
         if !self.flat {
-            return linkage.with_assembly(at.assembly).gradient(at.crank_angle);
+            let (columns, by_crank) = linkage.with_assembly(at.assembly).gradient(at.crank_angle)?;
+            return Some((padded(columns), by_crank));
         }
         let frame = linkage.frame(at.crank_angle, at.assembly)?;
         let gradient = shape_gradient(&frame, linkage.crank(), linkage.coupler(), linkage.coupler_offset())?;
-        Some((gradient.shape, gradient.crank_angle))
+        Some((padded(gradient.shape), gradient.crank_angle))
     }
 
     fn of_ground(&self) -> [f64; MOST] {
@@ -119,7 +171,7 @@ impl Dimensions for OfOutput {
         let by_ground = ground_gradient(linkage.crank_pivot(), linkage.follower_pivot());
         by_shape.iter_mut().zip(by_ground).for_each(|(by, ground)| *by -= ground);
         let degrees = |radians: f64| Complex::new(radians.to_degrees(), 0.0);
-        Some((by_shape.map(degrees), degrees(by_crank)))
+        Some((padded(by_shape.map(degrees)), degrees(by_crank)))
     }
 
     fn of_ground(&self) -> [f64; MOST] {
@@ -172,7 +224,7 @@ impl Dimensions for OfSliderPlace {
         }
         let [ax, ay, a, b, qx, qy, turn, ..] = shape.map(|column| real(column.place));
         let [from, to] = self.0.by_ends([qx, qy], turn);
-        Some(([ax, ay, a, b, from, to, ZERO, ZERO, ZERO], real(by_crank.place)))
+        Some((padded([ax, ay, a, b, from, to]), real(by_crank.place)))
     }
 
     fn of_ground(&self) -> [f64; MOST] {
@@ -264,12 +316,14 @@ impl Dimensions for OfSliderCrank {
         let (shape, by_crank) = linkage.gradient(at.crank_angle)?;
         let [ax, ay, a, b, qx, qy, turn, x, y] = shape.map(|column| column.coupler_point);
         let [rail_from, rail_to] = self.by_ends([qx, qy], turn);
-        Some(([ax, ay, a, b, rail_from, rail_to, x, y, ZERO], by_crank.coupler_point))
+        Some((padded([ax, ay, a, b, rail_from, rail_to, x, y]), by_crank.coupler_point))
     }
 
     fn of_ground(&self) -> [f64; MOST] {
         let per = 1.0 / (self.ends[1] - self.ends[0]);
-        [0.0, 0.0, 0.0, 0.0, -per, per, 0.0, 0.0, 0.0]
+        let mut turns = [0.0; MOST];
+        (turns[4], turns[5]) = (-per, per);
+        turns
     }
 
     fn by_ground(&self, _: &[Complex]) -> Option<Complex> {

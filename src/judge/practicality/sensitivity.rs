@@ -117,9 +117,9 @@ pub fn along(sweep: &Sweep, n: usize) -> Vec<At> {
 }
 
 /// Computes the shifts of the path at the given positions for errors of the dimensions; `None` if none of the positions
-/// has a derivative, and of a linkage of several loops.
+/// has a derivative.
 pub fn sensitivity(linkage: impl Into<CrankLinkage>, positions: &[At], crank: Crank) -> Option<Sensitivity> {
-    sensitivity_of(&*of_path(&linkage.into(), positions)?, positions, crank, None)
+    sensitivity_of(&*of_path(&linkage.into(), positions), positions, crank, None)
 }
 
 /// Computes the changes of the output at the given positions for errors of the dimensions: of an angle in degrees, of a slider's

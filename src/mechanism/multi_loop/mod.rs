@@ -269,6 +269,24 @@ impl MultiLoop {
         MultiLoop::new(self.kind, crank, &dyads, self.coupler_point * factor)
     }
 
+    /// Returns the linkage with other numbers, in the order of [`MultiLoop::numbers`]; `None` if they are those of none, or not as
+    /// many.
+    pub fn with_numbers(&self, numbers: &[f64]) -> Option<Self> {
+        let mut left = numbers.iter().copied();
+        let mut next = || left.next();
+        let pivot = Complex::new(next()?, next()?);
+        let crank = next()?;
+        let mut dyads = self.dyads;
+        for (j, dyad) in dyads.iter_mut().enumerate().take(self.kind.dyads()) {
+            for end in usize::from(j == 0)..2 {
+                dyad.ends[end] = Complex::new(next()?, next()?);
+            }
+            dyad.lengths = [next()?, next()?];
+        }
+        let point = Complex::new(next()?, next()?);
+        MultiLoop::new(self.kind, (pivot, crank), &dyads, point).ok().filter(|_| next().is_none())
+    }
+
     /// Returns its numbers, by which equals are ordered: A, a, the ends and lengths of each dyad, P.
     pub fn numbers(&self) -> Vec<f64> {
         let mut numbers = xy(self.crank_pivot).to_vec();
