@@ -77,7 +77,9 @@ export class Moving {
       if (!joints || i % PASSED !== 0) return [];
       const { bars, plates, along: ends } = this.bars(joints);
       const edges = plates.flatMap((plate) => plate.map((p, k) => [p, plate[(k + 1) % plate.length]]));
-      const lines = [...bars, ...edges, ...(ends.length > 0 ? [ends] : [])];
+      // Of one loop the coupler's own line lies between two others.
+      const links = this.shown.track ? [...bars, ...edges] : [...bars.slice(0, 2), ...edges.slice(1)];
+      const lines = [...links, ...(ends.length > 0 ? [ends] : [])];
       return lines.flatMap(([from, to]) => along(from, to));
     });
     return this.places;
