@@ -163,27 +163,21 @@ fn a_search_killed_again_and_again_goes_on_to_the_bytes_of_an_unbroken_one() {
     fs::write(folder.path().join("small.toml"), PROBLEM).expect("there is room");
     let begun = Instant::now();
     assert!(matches!(long_job(folder.path(), "whole", 2).status().expect("it runs").code(), Some(0 | 1)));
-    let time = begun.elapsed();
+    // A process is killed before this time is over. The machine may become slower or faster than it was for the whole
+    // run: a kill lengthens the time and an end shortens it, so that about three kills come before each end.
+    let mut longest = begun.elapsed().div_f64(2.0);
     let whole = settled(visible(&folder.path().join("whole")));
     let place = folder.path().join("r");
     let mut random: Stream = stream(11, 1);
-    let (mut kills, mut with_checkpoint, mut ends, mut tries, mut unfinished) = (0, 0, 0, 0, 0);
+    let (mut kills, mut with_checkpoint, mut ends, mut tries) = (0, 0, 0, 0);
     let wanted = kills_wanted();
     while kills < wanted || ends == 0 {
         tries += 1;
         assert!(tries < 5 * wanted, "{kills} kills, {ends} ends");
-        // A run that is killed goes on, on one thread or two, until it comes to its end.
+        // A run that is killed goes on, on one thread or two, until it comes to its end. The last one is left alone.
         let mut command = long_job(folder.path(), "r", 1 + below(&mut random, 2));
         command.arg("--resume");
-        // The last one is left alone. A run that has not ended for long gets more time: the machine may be slower than
-        // it was for the whole run.
-        let patience = 1.0 + f64::from(unfinished) / 8.0;
-        unfinished += 1;
-        let after = if kills < wanted {
-            time.mul_f64(0.5 * patience * unit(&mut random))
-        } else {
-            Duration::from_secs(60)
-        };
+        let after = longest.mul_f64(unit(&mut random));
         let is_killed = if kills < wanted {
             killed(command, after)
         } else {
@@ -192,6 +186,7 @@ fn a_search_killed_again_and_again_goes_on_to_the_bytes_of_an_unbroken_one() {
         };
         if is_killed {
             kills += 1;
+            longest = longest.mul_f64(1.1);
             let files = visible(&place);
             let checkpoint = files.get("checkpoint.json");
             with_checkpoint += usize::from(checkpoint.is_some());
@@ -205,7 +200,8 @@ fn a_search_killed_again_and_again_goes_on_to_the_bytes_of_an_unbroken_one() {
             }
             continue;
         }
-        (ends, unfinished) = (ends + 1, 0);
+        ends += 1;
+        longest = longest.mul_f64(0.75);
         assert!(!place.join("checkpoint.json").exists() && !place.join(".lock").exists());
         assert_eq!(settled(visible(&place)), whole, "after {kills} kills");
         fs::remove_dir_all(&place).expect("it is ours");
