@@ -18,7 +18,7 @@
 
 use linkwright::internals::app::job::run::{Context, Job, run};
 use linkwright::internals::files::problem_file::load;
-use linkwright::internals::mechanism::{Complex, LinkageKind, bounding_box, point};
+use linkwright::internals::mechanism::{Complex, LinkageKind, bounding_box, centroid_and_radius, point};
 use linkwright::internals::record::statistics::median;
 use linkwright::internals::record::{Candidate, Record};
 use std::f64::consts::TAU;
@@ -100,13 +100,6 @@ fn answer(file: &Path, kind: LinkageKind, options: &Options) -> (Record, Answer)
     (finished.record, Answer { best, seconds: finished.search_s })
 }
 
-/// Returns the root mean square of the points' distances from their centroid.
-fn radius(points: &[Complex]) -> f64 {
-    let n = points.len() as f64;
-    let centre = points.iter().sum::<Complex>() / n;
-    (points.iter().map(|p| (p - centre).norm_sqr()).sum::<f64>() / n).sqrt()
-}
-
 /// The figures of an answer as cells: rms, both ways, worst, seconds.
 fn cells(answer: &Answer, radius: f64) -> String {
     match answer.best.as_ref().and_then(|best| Some((best, best.error.two_sided?))) {
@@ -165,7 +158,7 @@ fn main() {
             let (record, found) = pool.install(|| answer(&file, kind, &options));
             let points: Vec<Complex> =
                 record.problem.resolved.task.points.iter().copied().map(point).collect();
-            cells_of_kinds.push(cells(&found, radius(&points)));
+            cells_of_kinds.push(cells(&found, centroid_and_radius(&points).1));
             let place = [70.0 + SIDE * column as f64, 24.0 + SIDE * row];
             picture(&mut drawn, place, (&points, record.problem.resolved.task.closed), &found);
             if name(&file).starts_with("letter-") && kind == LinkageKind::SixBar {

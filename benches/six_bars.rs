@@ -27,13 +27,16 @@ use linkwright::internals::mechanism::dyad_chain::proportions::{first_parameter,
 use linkwright::internals::mechanism::dyad_chain::{
     DyadChain, DyadChainKind, Frames, Grid, MAX_DYADS, MAX_PARAMETERS, Placement, Proportions, Shape,
 };
-use linkwright::internals::mechanism::{AssemblyMode, Complex, bounding_box, cross};
+use linkwright::internals::mechanism::{
+    AssemblyMode, Complex, bounding_box, centroid_and_radius, cross, point, xy,
+};
 use linkwright::internals::numbers::arithmetic::complex_lanes::ComplexLanes;
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
 use linkwright::internals::record::statistics::median;
 use linkwright::internals::synthesis::dyad_chains::{
     DyadChainAnswer, DyadChainLimits, Request, Watch, search,
 };
+use linkwright::internals::task::resampling::resample;
 use std::path::Path;
 use std::time::Instant;
 
@@ -104,29 +107,12 @@ fn shape(name: &str) -> Vec<Complex> {
 
 /// Returns points evenly by arc length.
 fn evenly(points: &[Complex], closed: bool) -> Vec<Complex> {
-    let mut corners = points.to_vec();
-    if closed {
-        corners.extend(points.first());
-    }
-    let mut along = vec![0.0];
-    for pair in corners.windows(2) {
-        along.push(along[along.len() - 1] + (pair[1] - pair[0]).norm());
-    }
-    let whole = along[along.len() - 1];
-    let steps = if closed { POINTS } else { POINTS - 1 };
-    let at = |m: usize| {
-        let length = whole * m as f64 / steps as f64;
-        let i = along.partition_point(|s| *s <= length).clamp(1, corners.len() - 1) - 1;
-        let part = ((length - along[i]) / (along[i + 1] - along[i])).clamp(0.0, 1.0);
-        corners[i] + (corners[i + 1] - corners[i]) * part
-    };
-    (0..POINTS).map(at).collect()
+    let corners: Vec<[f64; 2]> = points.iter().copied().map(xy).collect();
+    resample(&corners, closed, POINTS).into_iter().map(point).collect()
 }
 
 fn radius(points: &[Complex]) -> f64 {
-    let n = points.len() as f64;
-    let centre = points.iter().sum::<Complex>() / n;
-    (points.iter().map(|p| (p - centre).norm_sqr()).sum::<f64>() / n).sqrt()
+    centroid_and_radius(points).1
 }
 
 fn diagonal(points: &[Complex]) -> f64 {

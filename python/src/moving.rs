@@ -2,7 +2,7 @@
 
 use crate::arrays::{Input, Output};
 use linkwright::CouplerCurve;
-use linkwright::internals::mechanism::four_bar::coupler_curve::SingleLoop;
+use linkwright::internals::mechanism::four_bar::coupler_curve::CrankDriven;
 use linkwright::internals::mechanism::xy;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
@@ -60,7 +60,7 @@ pub fn rates(
 }
 
 /// Returns the coupler curve of the circuit that holds the position at a crank angle; shape (m, 2).
-pub fn coupler_curve<L: SingleLoop>(
+pub fn coupler_curve<L: CrankDriven>(
     py: Python<'_>,
     linkage: &L,
     at: f64,

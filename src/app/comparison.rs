@@ -49,10 +49,10 @@ enum NotMeasured {
     #[error(transparent)]
     Linkage(#[from] LinkageError),
     /// The outputs of the function are none that the kind has.
-    #[error("a {kind} has {what}")]
+    #[error("{} has {what}", kind.with_article())]
     WithoutOutput { kind: LinkageKind, what: &'static str },
     /// Some crank angles of the target are free, others given.
-    #[error("a target with some free crank angles is compared with four-bars alone, and this is a {kind}")]
+    #[error("a target with some free crank angles is compared with four-bars alone, and this is {}", kind.with_article())]
     PartlyTimed { kind: LinkageKind },
     #[error("it cannot be assembled at every {noun} of {name}")]
     NotAssembled { name: String, noun: &'static str },

@@ -90,7 +90,7 @@ impl Subject {
 
 /// A dimension that a linkage of this kind does not have.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{key}: a {kind} has no such dimension; it has {}", has.join(", "))]
+#[error("{key}: {} has no such dimension; it has {}", kind.with_article(), has.join(", "))]
 pub struct NoDimension {
     key: String,
     kind: LinkageKind,

@@ -5,17 +5,19 @@
 //! goes astray between two target points has small errors at the points and a large distance here.
 
 use crate::judge::referee::judge;
-use crate::mechanism::{Complex, bounding_box};
+use crate::mechanism::{Complex, bounding_box, centroid_and_radius, point, xy};
 use crate::record::{Candidate, TwoSidedRecord};
 use crate::task::Problem;
-use std::collections::HashMap;
+use crate::task::resampling::resample;
 
 /// Points into which the path and the curve are cut each.
 const PIECES: usize = 2000;
 /// Samples of the curve that are cut into equal arcs.
 const SAMPLES: usize = 4000;
+/// Points of a piece of a path whose box is looked at before its points are.
+const BLOCK: usize = 40;
 
-/// Returns the two-sided distance of a candidate of a path; `None` of another task, or where the curve has no length.
+/// Returns the two-sided distance of a candidate of a path; `None` of another task, or where the curve has no point.
 pub fn two_sided(problem: &Problem, candidate: &Candidate) -> Option<TwoSidedRecord> {
     let task = problem.task();
     if task.body().is_some() || task.points().len() < 2 {
@@ -26,14 +28,12 @@ pub fn two_sided(problem: &Problem, candidate: &Candidate) -> Option<TwoSidedRec
     let [low, high] = motion.range;
     let at = |i: usize| motion.on.point_at(low + (high - low) * i as f64 / SAMPLES as f64);
     let curve: Vec<Complex> = (0..=SAMPLES).filter_map(at).collect();
-    let mut path = task.points().to_vec();
-    if task.closed() && !task.repeats_first() {
-        path.push(path[0]);
+    if curve.is_empty() {
+        return None;
     }
-    let n = task.points().len() as f64;
-    let centre = task.points().iter().sum::<Complex>() / n;
-    let radius = (task.points().iter().map(|p| (p - centre).norm_sqr()).sum::<f64>() / n).sqrt();
-    let (path, curve) = (in_equal_arcs(&path)?, in_equal_arcs(&curve)?);
+    let path = in_equal_arcs(task.points(), task.closed() && !task.repeats_first());
+    let curve = in_equal_arcs(&curve, false);
+    let (_, radius) = centroid_and_radius(task.points());
     let (there, back) = (distances(&path, &curve), distances(&curve, &path));
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
     let sum = mean(&there) + mean(&back);
@@ -41,58 +41,33 @@ pub fn two_sided(problem: &Problem, candidate: &Candidate) -> Option<TwoSidedRec
     Some(TwoSidedRecord { mean: sum, mean_over_radius: sum / radius, worst })
 }
 
-/// Returns the middles of equal arcs of a polyline; `None` if it has no length.
-fn in_equal_arcs(line: &[Complex]) -> Option<Vec<Complex>> {
-    let mut along = vec![0.0];
-    for pair in line.windows(2) {
-        along.push(along[along.len() - 1] + (pair[1] - pair[0]).norm());
-    }
-    let whole = *along.last()?;
-    if whole <= 0.0 || !whole.is_finite() {
-        return None;
-    }
-    let mut i = 0;
-    let at = |piece: usize| {
-        let to = whole * (piece as f64 + 0.5) / PIECES as f64;
-        while i + 2 < along.len() && along[i + 1] < to {
-            i += 1;
-        }
-        let length = along[i + 1] - along[i];
-        let share = if length > 0.0 { ((to - along[i]) / length).clamp(0.0, 1.0) } else { 0.0 };
-        line[i] + (line[i + 1] - line[i]) * share
-    };
-    Some((0..PIECES).map(at).collect())
+/// Returns points at equal distances of arc length on a polyline.
+fn in_equal_arcs(line: &[Complex], closed: bool) -> Vec<Complex> {
+    let corners: Vec<[f64; 2]> = line.iter().copied().map(xy).collect();
+    resample(&corners, closed, PIECES).into_iter().map(point).collect()
 }
 
-/// Returns the distance of each point from the nearest of others, which are sorted into the cells of a grid.
+/// Returns the distance of each point from the nearest of others, which lie along a path: pieces of it whose box is farther away
+/// than what was found are passed over.
 fn distances(points: &[Complex], others: &[Complex]) -> Vec<f64> {
-    let [low, high] = bounding_box(points.iter().chain(others).copied());
-    let cells = (PIECES as f64).sqrt();
-    let side = ((high - low).norm() / cells).max(f64::MIN_POSITIVE);
-    let cell = |p: Complex| {
-        let at = (p - low) / side;
-        [at.re.floor() as i64, at.im.floor() as i64]
-    };
-    let mut grid: HashMap<[i64; 2], Vec<Complex>> = HashMap::new();
-    for other in others {
-        grid.entry(cell(*other)).or_default().push(*other);
-    }
-    let nearest = |p: &Complex| {
-        let [x, y] = cell(*p);
+    let blocks: Vec<([Complex; 2], &[Complex])> =
+        others.chunks(BLOCK).map(|block| (bounding_box(block.iter().copied()), block)).collect();
+    // The next point's nearest is mostly in the same piece.
+    let mut found_in = 0;
+    let mut nearest = |p: &Complex| {
         let mut best = f64::INFINITY;
-        // What lies in a ring of cells is at least as far as the rings inside it are wide.
-        for ring in 0.. {
-            let most = i64::from(ring);
-            for i in x - most..=x + most {
-                let step = if (i - x).abs() == most { 1 } else { (2 * most).max(1) };
-                for j in (y - most..=y + most).step_by(usize::try_from(step).unwrap_or(1)) {
-                    for other in grid.get(&[i, j]).into_iter().flatten() {
-                        best = best.min((p - other).norm_sqr());
-                    }
-                }
+        let first = found_in;
+        for k in 0..blocks.len() {
+            let i = (first + k) % blocks.len();
+            let ([low, high], block) = blocks[i];
+            let beyond = |x: f64, from: f64, to: f64| (from - x).max(x - to).max(0.0);
+            let (x, y) = (beyond(p.re, low.re, high.re), beyond(p.im, low.im, high.im));
+            if x * x + y * y >= best {
+                continue;
             }
-            if best <= (f64::from(ring) * side).powi(2) || f64::from(ring) > 4.0 * cells {
-                break;
+            let here = block.iter().map(|other| (p - other).norm_sqr()).fold(f64::INFINITY, f64::min);
+            if here < best {
+                (best, found_in) = (here, i);
             }
         }
         best.sqrt()
@@ -106,7 +81,7 @@ mod tests {
     use crate::numbers::arithmetic::streams::{stream, uniform};
 
     #[test]
-    fn the_nearest_of_a_grid_is_the_nearest_of_all() {
+    fn the_nearest_of_the_pieces_is_the_nearest_of_all() {
         let draws = &mut stream(12, 0);
         for reach in [1.0, 30.0] {
             let mut drawn = |shift: f64| -> Vec<Complex> {
@@ -127,11 +102,11 @@ mod tests {
         let circle = |r: f64| -> Vec<Complex> {
             (0..=720).map(|i| Complex::from_polar(r, std::f64::consts::TAU * f64::from(i) / 720.0)).collect()
         };
-        let (one, other) = (in_equal_arcs(&circle(1.0)), in_equal_arcs(&circle(1.25)));
-        let (one, other) = (one.expect("a length"), other.expect("a length"));
+        let (one, other) = (in_equal_arcs(&circle(1.0), false), in_equal_arcs(&circle(1.25), false));
         for found in distances(&one, &other).into_iter().chain(distances(&other, &one)) {
             assert!((found - 0.25).abs() < 1e-4, "{found}");
         }
-        assert_eq!(in_equal_arcs(&[Complex::new(1.0, 1.0); 3]), None);
+        let still = in_equal_arcs(&[Complex::new(1.0, 1.0); 3], true);
+        assert_eq!(still, vec![Complex::new(1.0, 1.0); PIECES]);
     }
 }

@@ -33,14 +33,16 @@ pub mod slider_crank;
 mod unit;
 
 pub use crate::numbers::arithmetic::{
-    Complex, bounding_box, cross, dot, least_and_greatest, length, nearest_share, point, turned, unit_vector,
-    xy,
+    Complex, bounding_box, centroid_and_radius, cross, dot, least_and_greatest, length, nearest_share, point,
+    turned, unit_vector, xy,
 };
 pub use any::{
     CrankRange, Link, Linkage, Mechanism, MechanismMotion, MechanismPose, Output, OutputRate, Slide, Status,
 };
 pub use chain::{Chain, ChainBuilder};
-pub use crank_linkage::{CrankLinkage, LinkageKeys, LinkageKind, LoopJoints, LoopMobility, NoLinkage};
+pub use crank_linkage::{
+    CrankLinkage, LinkageKeys, LinkageKind, LoopJoints, LoopMobility, NoLinkage, article,
+};
 pub use dyad::{Dyad, Pose};
 pub use dyad_chain::{DyadChain, DyadChainKind};
 pub use four_bar::{

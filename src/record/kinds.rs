@@ -1,6 +1,6 @@
 //! The best linkage of each kind that was searched for, so that a reader sees what another dyad buys.
 
-use super::{Candidate, Record};
+use super::Candidate;
 use crate::mechanism::LinkageKind;
 use serde::{Deserialize, Serialize};
 
@@ -48,13 +48,5 @@ impl BestOfKind {
         }
         best.sort_by_key(|one| one.kind);
         best
-    }
-}
-
-impl Record {
-    /// Returns whether linkages of several kinds were searched for, of which one has several loops.
-    pub fn compares_kinds(&self) -> bool {
-        let design = &self.problem.resolved.design;
-        design.mechanism.len() > 1 && design.searches_several_loops()
     }
 }

@@ -8,6 +8,7 @@
 //! | [`assemblies`] | the assembly at each target point |
 //! | [`certificate`] | what is proved about a result: no linkage of the covered kind can have a lower sum of squares |
 //! | [`digest`] | the digest of the data that determine a search |
+//! | [`errors`] | the errors of a candidate |
 //! | [`exact`] | exact synthesis: every linkage through nine points, counted, and the real ones listed |
 //! | [`extras`] | additions to a candidate's figures: warnings, the same curve by other linkages, families of answers |
 //! | [`front`] | the front of a problem and the picks beside its closest candidate |
@@ -30,6 +31,7 @@ use serde::{Deserialize, Serialize};
 mod assemblies;
 mod certificate;
 pub mod digest;
+mod errors;
 mod exact;
 mod extras;
 mod front;
@@ -43,6 +45,7 @@ pub mod sweep;
 
 pub use assemblies::Assemblies;
 pub use certificate::{Certificate, CertificatePart, Difference};
+pub use errors::{AngleErrorRecord, CurveErrorRecord, ErrorRecord, TwoSidedRecord};
 pub use exact::{
     Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES, generic_classes,
 };
@@ -86,10 +89,10 @@ pub struct Record {
     /// among the candidates, 0 where it is none of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buildable: Option<Candidate>,
-    /// Where four-bars alone are searched for and none is acceptable: an acceptable six-bar or eight-bar.
+    /// An acceptable six-bar or eight-bar, where four-bars alone are searched for and none is acceptable.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub other_kind: Option<Candidate>,
-    /// Where several kinds are searched for, six-bars or eight-bars among them: the best of each, the simplest first.
+    /// The best linkage of each kind, the simplest first, where several kinds are searched for and one has several loops.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub of_kinds: Vec<BestOfKind>,
     /// Linkages nearly as good as the closest that are smaller, or transmit better.
@@ -378,84 +381,12 @@ impl Candidate {
 /// The word of a requirement's value for a motion that returns to its first point by reversing.
 pub const TO_AND_FRO: &str = "to-and-fro";
 
-impl ErrorRecord {
-    /// Returns the errors of the link whose angles are wanted: the body's in a motion, the follower's in a function.
-    pub fn of_link(&self) -> Option<&AngleErrorRecord> {
-        self.angle.as_ref().or(self.output.as_ref())
-    }
-}
-
 impl Candidate {
     /// Whether the motion returns to the first point of a closed path by reversing, and the problem allows that.
     pub fn goes_to_and_fro(&self) -> bool {
         let is_word = |figure: &Figure| *figure == Figure::Word(TO_AND_FRO.to_owned());
         self.requirements.iter().any(|r| r.name == "closing" && is_word(&r.value))
     }
-}
-
-/// The errors of a candidate, in the file's unit: of places; in a function of the output, in degrees.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct ErrorRecord {
-    /// What was minimised: the weighted sum of squared distances; or the largest distance, in parts of its
-    /// point's tolerance where tolerances are given.
-    pub objective: f64,
-    /// The unweighted sum of squared distances at the points, or of the output's errors.
-    pub sum_sq: f64,
-    /// sqrt(sum_sq / n).
-    pub rms: f64,
-    /// The largest distance at a point, or error of the output.
-    pub max: f64,
-    /// Where it is, counted from 0.
-    pub max_at: usize,
-    /// rms over the diagonal of the target's bounding box; in a function, that of the outputs over their range.
-    pub rms_over_size: f64,
-    /// Distances to the whole coupler curve of the circuit, whatever the timing.
-    pub to_curve: CurveErrorRecord,
-    /// In a motion: the errors of the body's angle.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub angle: Option<AngleErrorRecord>,
-    /// In a function: the errors of the follower's angle.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub output: Option<AngleErrorRecord>,
-    /// Where the target was smoothed or resampled: distances of the points as they were given to that same curve.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub to_raw: Option<CurveErrorRecord>,
-    /// In a path: the distance of path and coupler curve from each other, over equal arcs of both, whatever the timing.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub two_sided: Option<TwoSidedRecord>,
-}
-
-/// The two-sided distance of a path and the part of the coupler curve that draws it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct TwoSidedRecord {
-    /// The mean distance of the path from the curve, plus that of the curve from the path (the Chamfer sum).
-    pub mean: f64,
-    /// That over the root of the mean square of the points' distances from their centroid.
-    pub mean_over_radius: f64,
-    /// The largest distance of a point of either from the other.
-    pub worst: f64,
-}
-
-/// The errors of a body's angle over the poses that give one, or of the follower's over the pairs of a function.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct AngleErrorRecord {
-    /// The root of the mean square, degrees.
-    pub rms_deg: f64,
-    /// The largest, degrees.
-    pub max_deg: f64,
-    /// Where it is, counted from 0.
-    pub max_at: usize,
-}
-
-/// Distances to the whole coupler curve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct CurveErrorRecord {
-    /// The sum of squares.
-    pub sum_sq: f64,
-    /// sqrt(sum_sq / n).
-    pub rms: f64,
-    /// The largest.
-    pub max: f64,
 }
 
 /// The transmission angle's extremes, degrees.

@@ -7,8 +7,9 @@ use super::text::{
     COLUMNS, NO_NUMBER, brief, clean, exact, grouped, indented, shortened, significant, wrapped,
 };
 use super::{output, price, words};
+use crate::mechanism::multi_loop::keys::{DyadKeys, PointKeys, StageKeys};
 use crate::mechanism::{CrankLinkage, LinkageKind, MultiLoop, Unit};
-use crate::record::{AngleErrorRecord, BestOfKind, Candidate, ErrorRecord, Record};
+use crate::record::{AngleErrorRecord, BestOfKind, Candidate, ErrorRecord, Reason, Record};
 use crate::task::spec::{Measure, ProblemSpec, TaskSpec};
 use crate::task::{Defect, TaskKind};
 
@@ -299,18 +300,18 @@ pub(super) fn of_kinds(record: &Record) -> Option<String> {
         format!("{} rms {rms}{unit}, largest error {max}{unit}{verdict}", best.kind)
     };
     let list: Vec<String> = record.of_kinds.iter().map(of).collect();
-    let left = record
-        .problem
-        .resolved
-        .design
-        .mechanism
-        .iter()
-        .filter(|kind| record.of_kinds.iter().all(|best| best.kind != **kind));
-    let left: Vec<String> = left.map(ToString::to_string).collect();
-    let without = match left.is_empty() {
-        true => String::new(),
-        false => format!(" (not needed: {})", left.join(", ")),
+    // A kind is searched for only where no simpler one meets the tolerance.
+    let simplest = record.of_kinds.iter().find(|best| best.accepted).map(|best| best.kind);
+    let spec = &record.problem.resolved;
+    let is_enough = spec.task.tolerance.is_some() || record.termination.reason == Reason::TargetReached;
+    let is_needed = |kind: &LinkageKind| !is_enough || simplest.is_none_or(|simplest| *kind < simplest);
+    let is_absent = |kind: &LinkageKind| record.of_kinds.iter().all(|best| best.kind != *kind);
+    let absent = |wanted: bool, words: &str| {
+        let kinds = spec.design.mechanism.iter().filter(|kind| is_absent(kind) && is_needed(kind) == wanted);
+        let kinds: Vec<&str> = kinds.map(|kind| kind.name()).collect();
+        if kinds.is_empty() { String::new() } else { format!(" ({words}: {})", kinds.join(", ")) }
     };
+    let without = absent(true, "none found") + &absent(false, "not needed");
     (!list.is_empty()).then(|| format!("Best of each kind: {}{without}.", list.join("; ")))
 }
 
@@ -409,16 +410,13 @@ fn multi_loop_in_words(linkage: &MultiLoop) -> String {
     let pivots = keys.pivots.iter().map(|(name, at)| format!("{name}~=~{}", pair(*at)));
     let mut parts: Vec<String> = pivots.collect();
     parts.push(format!("crank A-C~{}", exact(keys.crank.length)));
-    for joint in linkage.joints() {
-        if let Some(dyad) = keys.dyad.iter().find(|dyad| dyad.joint == joint.name) {
-            let ([x, y], [l1, l2]) = (&dyad.from, dyad.lengths.map(exact));
-            let side = i64::from(dyad.side);
-            parts.push(format!("{x}-{0}~{l1}, {y}-{0}~{l2}, side~{side}", dyad.joint));
+    parts.extend(linkage.stages().into_iter().map(|stage| match stage {
+        StageKeys::Dyad(DyadKeys { joint, from: [x, y], lengths, side }) => {
+            let ([l1, l2], side) = (lengths.map(exact), i64::from(side));
+            format!("{x}-{joint}~{l1}, {y}-{joint}~{l2}, side~{side}")
         }
-        if let Some(point) = keys.point.iter().find(|point| point.name == joint.name) {
-            parts.push(format!("{} on {}-{} at~{}", point.name, point.on[0], point.on[1], pair(point.at)));
-        }
-    }
+        StageKeys::Point(PointKeys { name, on: [p, q], at }) => format!("{name} on {p}-{q} at~{}", pair(at)),
+    }));
     let lead = format!("    {}: ", linkage.chain_kind().name());
     wrapped(&lead, "      ", &parts.join("; "), COLUMNS).replace('~', " ")
 }

@@ -9,8 +9,8 @@
 //!
 //! The points then stand on it at the phases theta, not evenly in their arc length.
 
-use crate::mechanism::Complex;
 use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::{Complex, centroid_and_radius};
 use nalgebra::{Matrix5, Vector5};
 use std::f64::consts::TAU;
 
@@ -23,8 +23,7 @@ const NEARLY: f64 = 0.05;
 /// The ellipse is the conic with the least sum of (A x^2 + B xy + C y^2 + D x + E y - 1)^2, with x and y from the
 /// points' mean. An affine map takes it to the unit circle and the phases to angles.
 pub(super) fn phases(points: &[Complex]) -> Option<Vec<f64>> {
-    let mean = points.iter().sum::<Complex>() / points.len() as f64;
-    let size = (points.iter().map(|p| (p - mean).norm_sqr()).sum::<f64>() / points.len() as f64).sqrt();
+    let (mean, size) = centroid_and_radius(points);
     let unit: Vec<Complex> = points.iter().map(|p| (p - mean) / size).collect();
     let (mut matrix, mut right) = (Matrix5::zeros(), Vector5::zeros());
     for z in &unit {

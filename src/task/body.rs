@@ -54,8 +54,8 @@ impl Output {
     /// Returns whether linkages of a kind have such an output.
     pub fn is_of(self, kind: LinkageKind) -> bool {
         match self {
-            Output::Angle => kind != LinkageKind::SliderCrank,
-            Output::Place => kind != LinkageKind::FourBar,
+            Output::Angle => matches!(kind, LinkageKind::FourBar | LinkageKind::InvertedSliderCrank),
+            Output::Place => kind.has_slider(),
         }
     }
 

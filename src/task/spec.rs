@@ -118,6 +118,11 @@ impl DesignSpec {
         if self.mechanism.is_empty() { kind == LinkageKind::FourBar } else { self.mechanism.contains(&kind) }
     }
 
+    /// Returns whether several kinds are searched for, of which one has several loops.
+    pub fn compares_kinds(&self) -> bool {
+        self.mechanism.len() > 1 && self.searches_several_loops()
+    }
+
     /// Returns whether six-bars or eight-bars are searched for.
     pub fn searches_several_loops(&self) -> bool {
         self.mechanism.iter().any(|kind| kind.dyads().is_some())

@@ -15,7 +15,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Finds the four-bar linkage that draws the path you ask for, takes a body through your poses, or turns one angle into another.
+/// Finds the linkage that draws the path you ask for (a four-bar, one with a slider, a six-bar), takes a body through your poses, or
+/// turns one angle into another.
 #[derive(Debug, Parser)]
 #[command(
     name = "linkwright",

@@ -196,11 +196,10 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     }
     lap(&mut advice_s.front);
     let beside_s = start.elapsed().as_secs_f64() - search_s;
-    let of_kinds =
-        match problem.spec().design.mechanism.len() > 1 && problem.spec().design.searches_several_loops() {
-            true => BestOfKind::of_all(outcome.candidates.iter().chain(&outcome.others)),
-            false => Vec::new(),
-        };
+    let of_kinds = match problem.spec().design.compares_kinds() {
+        true => BestOfKind::of_all(outcome.candidates.iter().chain(&outcome.others)),
+        false => Vec::new(),
+    };
     let asked = job.clone().try_into()?;
     let found = Record::new(asked, outcome.used, outcome.reason, outcome.evaluations, outcome.candidates);
     let record = Record {

@@ -127,15 +127,15 @@ const KINDS: &str = "a linkage file has a table [linkage] with A, B, a, b, c, d,
                      [slider_crank], [inverted_slider_crank] or [chain]";
 
 /// Returns the kind of a linkage with its article: `a slider-crank`.
-pub fn kind_in_words(linkage: &Linkage) -> &'static str {
+pub fn kind_in_words(linkage: &Linkage) -> String {
     match linkage {
         Linkage::FourBar(_) => "a four-bar",
         Linkage::SliderCrank(_) => "a slider-crank",
         Linkage::InvertedSliderCrank(_) => "an inverted slider-crank",
-        Linkage::MultiLoop(linkage) if linkage.dyad_count() > 2 => "an eight-bar",
-        Linkage::MultiLoop(_) => "a six-bar",
+        Linkage::MultiLoop(linkage) => return linkage.linkage_kind().with_article(),
         Linkage::Chain(_) => "a chain",
     }
+    .to_owned()
 }
 
 /// Reads the four-bar of a file.

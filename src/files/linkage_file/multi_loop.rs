@@ -1,12 +1,12 @@
 //! The `[chain]` form in which six-bars and eight-bars are written.
 
 use super::text_of;
-use crate::mechanism::multi_loop::keys::{ChainKeys, DyadKeys, PointKeys};
+use crate::mechanism::multi_loop::keys::{ChainKeys, DyadKeys, PointKeys, StageKeys};
 use crate::mechanism::{MultiLoop, Unit};
 
 /// Returns the text of the linkage file of a six-bar or an eight-bar; every number reads back to the same digits.
 pub fn multi_loop_to_toml(name: &str, unit: Option<Unit>, linkage: &MultiLoop) -> String {
-    let ChainKeys { trace, pivots, crank, dyad, point } = linkage.keys();
+    let ChainKeys { trace, pivots, crank, .. } = linkage.keys();
     let mut table = format!("[chain]\ntrace = \"{trace}\"\n\n[chain.pivots]\n");
     for (name, [x, y]) in &pivots {
         table.push_str(&format!("{name} = [{x:?}, {y:?}]\n"));
@@ -15,25 +15,18 @@ pub fn multi_loop_to_toml(name: &str, unit: Option<Unit>, linkage: &MultiLoop) -
         "\n[chain.crank]\npivot = \"{}\"\njoint = \"{}\"\nlength = {:?}\n",
         crank.pivot, crank.joint, crank.length
     ));
-    // In the order of assembly: a stage hangs on points that are made above it.
-    for joint in linkage.joints() {
-        if let Some(DyadKeys { joint, from: [x, y], lengths: [l1, l2], side }) =
-            dyad.iter().find(|d| d.joint == joint.name)
-        {
-            table.push_str(&format!(
+    for stage in linkage.stages() {
+        table.push_str(&match stage {
+            StageKeys::Dyad(DyadKeys { joint, from: [x, y], lengths: [l1, l2], side }) => format!(
                 "\n[[chain.dyad]]\njoint = \"{joint}\"\nfrom = [\"{x}\", \"{y}\"]\nlengths = [{l1:?}, {l2:?}]\nside = {}\n",
-                i64::from(*side)
-            ));
-        }
-        if let Some(PointKeys { name, on: [p, q], at: [x, y] }) =
-            point.iter().find(|point| point.name == joint.name)
-        {
-            table.push_str(&format!(
+                i64::from(side)
+            ),
+            StageKeys::Point(PointKeys { name, on: [p, q], at: [x, y] }) => format!(
                 "\n[[chain.point]]\nname = \"{name}\"\non = [\"{p}\", \"{q}\"]\nat = [{x:?}, {y:?}]\n"
-            ));
-        }
+            ),
+        });
     }
-    let kind = if linkage.dyad_count() > 2 { "An eight-bar" } else { "A six-bar" };
+    let kind = linkage.linkage_kind().with_article().replacen('a', "A", 1);
     let letters = "# A, B and further ones on the ground: fixed pivots. A-C is the crank; each dyad is two links that meet in a\n\
                    # new joint, to the left of the line between its ends where side = 1. P, the traced point, lies on a link.\n";
     text_of(&format!("{kind} ({})", linkage.chain_kind().name()), letters, name, unit, &table)

@@ -79,6 +79,7 @@ pub(super) fn of_kinds(
             "write mechanism = \"four-bar\"",
         );
     }
+    of_several_loops(toml, raw, &kinds, (task, solve, require))?;
     if let Some(output) = task.output.as_ref().map(|output| output.output)
         && let Some(kind) = kinds.iter().find(|kind| !output.is_of(**kind))
     {
@@ -86,9 +87,9 @@ pub(super) fn of_kinds(
             Output::Angle => "write output = [..], the places of its slider",
             Output::Place => "write output_deg = [..], the angles of its follower",
         };
-        return toml.refuse("design.mechanism", format!("a {kind} has {}", output.missing()), help);
+        let message = format!("{} has {}", kind.with_article(), output.missing());
+        return toml.refuse("design.mechanism", message, help);
     }
-    of_several_loops(toml, raw, &kinds, (task, solve, require))?;
     let Some(slider) = kinds.iter().find(|kind| kind.has_slider()) else { return Ok(()) };
     let Some(reason) = WithoutSliders::of(task, solve) else { return Ok(()) };
     let why = format!("\"{slider}\" {reason}");
@@ -119,7 +120,7 @@ fn of_several_loops(
         return Ok(());
     }
     if !require.types.is_empty() {
-        let message = format!("type is about four-bars, and a {kind} has none");
+        let message = format!("type is about four-bars, and {} has none", kind.with_article());
         return toml.refuse("require.type", message, "remove it: the crank of every six-bar turns fully");
     }
     let bounds = [
@@ -134,18 +135,16 @@ fn of_several_loops(
         ("coupler_y", raw.coupler_y.is_some()),
     ];
     if let Some((key, _)) = bounds.into_iter().find(|(_, given)| *given) {
-        let message = format!("{key} bounds nothing of a {kind}: A and B alone do");
+        let message = format!("{key} bounds nothing of {}: A and B alone do", kind.with_article());
         let help = "remove it; longest_max and link_ratio_max in [require] bound all of its lengths";
         return toml.refuse(&format!("design.{key}"), message, help);
     }
     for (key, pivot) in [("A", raw.crank_pivot), ("B", raw.follower_pivot)] {
         if pivot.is_some_and(|pivot| pivot.0.iter().any(Limits::is_fixed)) {
-            let message = format!("{key} is fixed, and the pivots of a {kind} are searched for in boxes");
-            return toml.refuse(
-                &format!("design.{key}"),
-                message,
-                format!("write {key} = [[xmin, xmax], [ymin, ymax]]"),
-            );
+            let of = kind.with_article();
+            let message = format!("{key} is fixed, and the pivots of {of} are searched for in boxes");
+            let help = format!("write {key} = [[xmin, xmax], [ymin, ymax]]");
+            return toml.refuse(&format!("design.{key}"), message, help);
         }
     }
     Ok(())

@@ -45,7 +45,7 @@ impl Comparison<'_> {
 
     /// Checks that the best of each kind are kinds that are searched for, and no worse than the candidates.
     fn of_kinds(&mut self, record: &Record) {
-        if !record.of_kinds.is_empty() && !record.compares_kinds() {
+        if !record.of_kinds.is_empty() && !record.problem.resolved.design.compares_kinds() {
             return self.differ("of_kinds", "there", "not called for: one kind is searched for");
         }
         for (i, best) in record.of_kinds.iter().enumerate() {

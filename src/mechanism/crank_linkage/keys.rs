@@ -8,77 +8,36 @@ use crate::mechanism::{
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use std::borrow::Cow;
 
-/// The name of the kind, as the key `kind` of a slider-crank.
-#[derive(Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum SliderCrankKind {
-    SliderCrank,
-}
-
-/// The name of the kind, as the key `kind` of an inverted slider-crank.
-#[derive(Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum InvertedSliderCrankKind {
-    InvertedSliderCrank,
-}
-
-/// The name of the kind, as the key `kind` of a linkage of several loops.
-#[derive(Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum MultiLoopKind {
-    SixBar,
-    EightBar,
-}
-
-/// A linkage as it stands in records: a four-bar by its keys alone, other kinds with their name under `kind`.
+/// The keys of a linkage, without its kind.
 #[derive(Serialize)]
 #[serde(untagged)]
-enum Written {
-    /// A four-bar.
+enum Keys {
     FourBar(NaturalCoordinates),
-    /// A slider-crank.
-    SliderCrank {
-        /// The kind.
-        kind: SliderCrankKind,
-        #[serde(flatten)]
-        parameters: SliderCrankParameters,
-    },
-    /// An inverted slider-crank.
-    InvertedSliderCrank {
-        /// The kind.
-        kind: InvertedSliderCrankKind,
-        #[serde(flatten)]
-        parameters: InvertedSliderCrankParameters,
-    },
-    /// A six-bar or an eight-bar.
-    MultiLoop {
-        /// The kind.
-        kind: MultiLoopKind,
-        /// Its chain.
-        chain: ChainKeys,
-    },
+    SliderCrank(SliderCrankParameters),
+    InvertedSliderCrank(InvertedSliderCrankParameters),
+    MultiLoop { chain: ChainKeys },
+}
+
+/// A linkage as it stands in records.
+#[derive(Serialize)]
+struct Written {
+    /// The kind; absent of a four-bar.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kind: Option<LinkageKind>,
+    #[serde(flatten)]
+    keys: Keys,
 }
 
 impl Serialize for CrankLinkage {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let written = match self {
-            CrankLinkage::FourBar(linkage) => Written::FourBar(linkage.natural_coordinates()),
-            CrankLinkage::SliderCrank(linkage) => {
-                Written::SliderCrank { kind: SliderCrankKind::SliderCrank, parameters: linkage.parameters() }
-            }
-            CrankLinkage::InvertedSliderCrank(linkage) => Written::InvertedSliderCrank {
-                kind: InvertedSliderCrankKind::InvertedSliderCrank,
-                parameters: linkage.parameters(),
-            },
-            CrankLinkage::MultiLoop(linkage) => Written::MultiLoop {
-                kind: match linkage.dyad_count() {
-                    2 => MultiLoopKind::SixBar,
-                    _ => MultiLoopKind::EightBar,
-                },
-                chain: linkage.keys(),
-            },
+        let keys = match self {
+            CrankLinkage::FourBar(linkage) => Keys::FourBar(linkage.natural_coordinates()),
+            CrankLinkage::SliderCrank(linkage) => Keys::SliderCrank(linkage.parameters()),
+            CrankLinkage::InvertedSliderCrank(linkage) => Keys::InvertedSliderCrank(linkage.parameters()),
+            CrankLinkage::MultiLoop(linkage) => Keys::MultiLoop { chain: linkage.keys() },
         };
-        written.serialize(serializer)
+        let kind = Some(self.kind()).filter(|kind| *kind != LinkageKind::FourBar);
+        Written { kind, keys }.serialize(serializer)
     }
 }
 
@@ -144,7 +103,7 @@ pub struct LinkageKeys {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoLinkage {
     /// The kind has no such key.
-    #[error("a {0} has no key `{1}`")]
+    #[error("{} has no key `{}`", .0.with_article(), .1)]
     Stray(LinkageKind, &'static str),
     /// A key of the kind is absent.
     #[error("missing field `{0}`")]
@@ -156,38 +115,32 @@ pub enum NoLinkage {
     #[error(transparent)]
     MultiLoop(#[from] NoMultiLoop),
     /// The chain has another number of dyads than the kind.
-    #[error("this chain is not that of a {0}")]
+    #[error("this chain is not that of {}", .0.with_article())]
     OtherKind(LinkageKind),
 }
 
 impl LinkageKeys {
     /// Returns the keys that are there although the kind has none of them.
     fn stray(&self, kind: LinkageKind) -> Option<&'static str> {
-        let (four_bar, slider, inverted) = (
-            kind == LinkageKind::FourBar,
-            kind == LinkageKind::SliderCrank,
-            kind == LinkageKind::InvertedSliderCrank,
-        );
-        let several = kind.dyads().is_some();
-        [
-            ("A", self.crank_pivot.is_some() && several),
-            ("a", self.a.is_some() && several),
-            ("t1", self.t1.is_some() && several),
-            ("chain", self.chain.is_some() && !several),
-            ("B", self.second_pivot.is_some() && (slider || several)),
-            ("b", self.b.is_some() && (inverted || several)),
-            ("c", self.c.is_some() && !four_bar),
-            ("d", self.d.is_some() && !four_bar),
-            ("e", self.e.is_some() && !four_bar),
-            ("t2", self.t2.is_some() && !four_bar),
-            ("line_point", self.line_point.is_some() && !slider),
-            ("line_deg", self.line_deg.is_some() && !slider),
-            ("offset", self.offset.is_some() && !inverted),
-            ("coupler_x", self.coupler_x.is_some() && (four_bar || several)),
-            ("coupler_y", self.coupler_y.is_some() && (four_bar || several)),
-        ]
-        .into_iter()
-        .find_map(|(key, strays)| strays.then_some(key))
+        use LinkageKind::{EightBar, FourBar, InvertedSliderCrank, SixBar, SliderCrank};
+        let keys: [(&str, bool, &[LinkageKind]); 15] = [
+            ("A", self.crank_pivot.is_some(), &[FourBar, SliderCrank, InvertedSliderCrank]),
+            ("a", self.a.is_some(), &[FourBar, SliderCrank, InvertedSliderCrank]),
+            ("t1", self.t1.is_some(), &[FourBar, SliderCrank, InvertedSliderCrank]),
+            ("chain", self.chain.is_some(), &[SixBar, EightBar]),
+            ("B", self.second_pivot.is_some(), &[FourBar, InvertedSliderCrank]),
+            ("b", self.b.is_some(), &[FourBar, SliderCrank]),
+            ("c", self.c.is_some(), &[FourBar]),
+            ("d", self.d.is_some(), &[FourBar]),
+            ("e", self.e.is_some(), &[FourBar]),
+            ("t2", self.t2.is_some(), &[FourBar]),
+            ("line_point", self.line_point.is_some(), &[SliderCrank]),
+            ("line_deg", self.line_deg.is_some(), &[SliderCrank]),
+            ("offset", self.offset.is_some(), &[InvertedSliderCrank]),
+            ("coupler_x", self.coupler_x.is_some(), &[SliderCrank, InvertedSliderCrank]),
+            ("coupler_y", self.coupler_y.is_some(), &[SliderCrank, InvertedSliderCrank]),
+        ];
+        keys.into_iter().find_map(|(key, given, of)| (given && !of.contains(&kind)).then_some(key))
     }
 }
 
@@ -202,51 +155,49 @@ impl TryFrom<LinkageKeys> for CrankLinkage {
         if let Some(key) = keys.stray(kind) {
             return Err(NoLinkage::Stray(kind, key));
         }
-        if let Some(dyads) = kind.dyads() {
-            let linkage = MultiLoop::from_keys(&given(keys.chain, "chain")?)?;
-            return match linkage.dyad_count() == dyads {
-                true => Ok(linkage.into()),
-                false => Err(NoLinkage::OtherKind(kind)),
-            };
-        }
-        let crank_pivot = given(keys.crank_pivot, "A")?;
-        let (crank, assembly) = (given(keys.a, "a")?, given(keys.t1, "t1")?);
+        let crank_pivot = || given(keys.crank_pivot, "A");
+        let (crank, assembly) = (|| given(keys.a, "a"), || given(keys.t1, "t1"));
         Ok(match kind {
             LinkageKind::FourBar => FourBar::new(NaturalCoordinates {
-                crank_pivot,
+                crank_pivot: crank_pivot()?,
+                crank: crank()?,
+                assembly: assembly()?,
                 follower_pivot: given(keys.second_pivot, "B")?,
-                crank,
                 coupler: given(keys.b, "b")?,
                 follower: given(keys.c, "c")?,
                 crank_side: given(keys.d, "d")?,
                 follower_side: given(keys.e, "e")?,
-                assembly,
                 side: given(keys.t2, "t2")?,
             })?
             .into(),
             LinkageKind::SliderCrank => SliderCrank::new(SliderCrankParameters {
-                crank_pivot,
-                crank,
+                crank_pivot: crank_pivot()?,
+                crank: crank()?,
+                assembly: assembly()?,
                 coupler: given(keys.b, "b")?,
                 line_point: given(keys.line_point, "line_point")?,
                 line_deg: given(keys.line_deg, "line_deg")?,
                 coupler_x: given(keys.coupler_x, "coupler_x")?,
                 coupler_y: given(keys.coupler_y, "coupler_y")?,
-                assembly,
             })?
             .into(),
             LinkageKind::InvertedSliderCrank => InvertedSliderCrank::new(InvertedSliderCrankParameters {
-                crank_pivot,
+                crank_pivot: crank_pivot()?,
+                crank: crank()?,
+                assembly: assembly()?,
                 block_pivot: given(keys.second_pivot, "B")?,
-                crank,
                 offset: given(keys.offset, "offset")?,
                 coupler_x: given(keys.coupler_x, "coupler_x")?,
                 coupler_y: given(keys.coupler_y, "coupler_y")?,
-                assembly,
             })?
             .into(),
-            // Read above.
-            LinkageKind::SixBar | LinkageKind::EightBar => return Err(NoLinkage::Missing("chain")),
+            LinkageKind::SixBar | LinkageKind::EightBar => {
+                let linkage = MultiLoop::from_keys(&given(keys.chain, "chain")?)?;
+                if linkage.linkage_kind() != kind {
+                    return Err(NoLinkage::OtherKind(kind));
+                }
+                linkage.into()
+            }
         })
     }
 }

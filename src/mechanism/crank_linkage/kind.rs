@@ -2,6 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Returns the article before a name: `an` of `eight-bar`.
+pub fn article(name: &str) -> &'static str {
+    if name.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" }
+}
+
 /// The kinds of linkages that a crank drives.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema,
@@ -42,6 +47,11 @@ impl LinkageKind {
             LinkageKind::EightBar => Some(3),
             _ => None,
         }
+    }
+
+    /// Returns the name with its article: `an eight-bar`.
+    pub fn with_article(self) -> String {
+        format!("{} {self}", article(self.name()))
     }
 
     /// Returns the name in files: `slider-crank`.

@@ -1,6 +1,8 @@
 //! Mobility of linkages: how far the input turns, on which circuits and branches.
 
-use crate::mechanism::{AssemblyMode, Branch, Circuit, InputArc, InputRange, LinkageType};
+use super::CrankLinkage;
+use crate::mechanism::slider::SliderMobility;
+use crate::mechanism::{AssemblyMode, Branch, Circuit, InputArc, InputRange, LinkageType, SliderLinkage};
 
 /// Mobility of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,5 +32,36 @@ impl LoopMobility {
     /// Returns the branch of a position that closes the loop.
     pub fn branch(&self, crank_angle: f64, assembly: AssemblyMode) -> Branch {
         self.input.branch(self.change_point, crank_angle, assembly)
+    }
+}
+
+impl CrankLinkage {
+    /// Computes type, margin and range of the input.
+    pub fn mobility(&self) -> LoopMobility {
+        let of_slider = |mobility: SliderMobility| LoopMobility {
+            linkage_type: None,
+            margin: mobility.full_turn_margin,
+            input: mobility.input,
+            change_point: mobility.change_point,
+        };
+        match self {
+            CrankLinkage::FourBar(linkage) => {
+                let mobility = linkage.mobility();
+                LoopMobility {
+                    linkage_type: mobility.linkage_type,
+                    margin: mobility.grashof_margin,
+                    input: mobility.input,
+                    change_point: mobility.linkage_type == Some(LinkageType::ChangePoint),
+                }
+            }
+            CrankLinkage::SliderCrank(linkage) => of_slider(linkage.mobility()),
+            CrankLinkage::InvertedSliderCrank(linkage) => of_slider(linkage.mobility()),
+            CrankLinkage::MultiLoop(linkage) => {
+                // One that does not turn fully cannot be driven by a motor.
+                let margin = linkage.full_turn_margin();
+                let input = if margin > 0.0 { InputRange::Full } else { InputRange::None };
+                LoopMobility { linkage_type: None, margin, input, change_point: false }
+            }
+        }
     }
 }

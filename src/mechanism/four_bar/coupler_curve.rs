@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 pub const DEFAULT_SAMPLES: usize = 720;
 
 /// A linkage that a crank drives, as far as its coupler curve asks.
-pub trait SingleLoop: Copy {
+pub trait CrankDriven: Copy {
     /// Returns the same linkage with the given sign of the closure's root.
     #[must_use]
     fn with_assembly(self, assembly: AssemblyMode) -> Self;
@@ -26,7 +26,7 @@ pub trait SingleLoop: Copy {
     fn arc_of(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<InputArc>;
 }
 
-impl SingleLoop for FourBar {
+impl CrankDriven for FourBar {
     fn with_assembly(self, assembly: AssemblyMode) -> Self {
         FourBar::with_assembly(self, assembly)
     }
@@ -69,7 +69,7 @@ pub struct Nearest {
     pub distance: f64,
 }
 
-impl<L: SingleLoop> CouplerCurve<L> {
+impl<L: CrankDriven> CouplerCurve<L> {
     /// Samples the curve of the circuit that holds the given position, with `samples` samples (at least 8).
     pub fn through(linkage: &L, crank_angle: f64, assembly: AssemblyMode, samples: usize) -> Self {
         let on = OnCircuit::through(linkage, crank_angle, assembly);

@@ -13,7 +13,7 @@
 //! | rocks, non-Grashof (triple-rocker) | 1 | 2 | branch: t1 |
 //! | change point | by its input range; the circuits meet in the flat position | | |
 
-use super::coupler_curve::SingleLoop;
+use super::coupler_curve::CrankDriven;
 use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -218,7 +218,7 @@ pub struct OnCircuit<L = FourBar> {
     pub arc: Option<InputArc>,
 }
 
-impl<L: SingleLoop> OnCircuit<L> {
+impl<L: CrankDriven> OnCircuit<L> {
     /// Returns the circuit that holds the given position.
     pub fn through(linkage: &L, crank_angle: f64, assembly: AssemblyMode) -> Self {
         OnCircuit { linkage: linkage.with_assembly(assembly), arc: linkage.arc_of(crank_angle, assembly) }

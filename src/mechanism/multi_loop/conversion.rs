@@ -1,12 +1,12 @@
 //! A linkage of several loops as a general [`Chain`], and from the [`DyadChain`] that a search found.
 
-use super::keys::{ChainKeys, DyadKeys, PointKeys};
+use super::keys::{ChainKeys, DyadKeys, PointKeys, StageKeys};
 use super::{LinkPair, MultiLoop};
 use crate::mechanism::chain::ChainError;
 use crate::mechanism::dyad_chain::kinds::{CRANK, GROUND};
 use crate::mechanism::dyad_chain::proportions::{first_parameter, length_parameters};
 use crate::mechanism::dyad_chain::{Grid, MAX_PARAMETERS, Placement, Shape};
-use crate::mechanism::{AssemblyMode, Chain, ChainBuilder, Complex, DyadChain, LinkageError};
+use crate::mechanism::{AssemblyMode, Chain, ChainBuilder, Complex, DyadChain, LinkageError, xy};
 
 impl MultiLoop {
     /// Returns the linkage of a dyad chain; a phase of the chain is the crank angle less the angle of the line A-B.
@@ -43,22 +43,19 @@ impl MultiLoop {
     /// # Errors
     /// If the chain's own limits are exceeded.
     pub fn to_chain(&self) -> Result<Chain, Box<ChainError>> {
-        let ChainKeys { pivots, crank, dyad, point, trace } = self.keys();
+        let ChainKeys { crank, trace, .. } = self.keys();
         let mut builder = ChainBuilder::new();
-        for joint in self.joints() {
-            if let Some(at) = pivots.get(joint.name) {
-                builder = builder.pivot(joint.name, *at);
-            }
+        for joint in self.joints().iter().filter(|joint| joint.body == GROUND) {
+            builder = builder.pivot(joint.name, xy(joint.at));
         }
         builder = builder.crank(&crank.pivot, &crank.joint, crank.length);
-        for joint in self.joints() {
-            let made = dyad.iter().find(|d| d.joint == joint.name);
-            if let Some(DyadKeys { joint, from: [x, y], lengths, side }) = made {
-                builder = builder.dyad(joint, [x, y], *lengths, *side);
-            }
-            if let Some(PointKeys { name, on: [p, q], at }) = point.iter().find(|p| p.name == joint.name) {
-                builder = builder.point(name, [p, q], *at);
-            }
+        for stage in self.stages() {
+            builder = match stage {
+                StageKeys::Dyad(DyadKeys { joint, from: [x, y], lengths, side }) => {
+                    builder.dyad(&joint, [&x, &y], lengths, side)
+                }
+                StageKeys::Point(PointKeys { name, on: [p, q], at }) => builder.point(&name, [&p, &q], at),
+            };
         }
         builder.trace(&trace).build()
     }

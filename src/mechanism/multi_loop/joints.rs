@@ -25,9 +25,12 @@ pub struct Body {
     pub joints: Vec<(&'static str, Complex)>,
 }
 
+/// The name of the joint that the crank carries, on which the first dyad hangs.
+pub(super) const CRANK_PIN: &str = "C";
+
 /// Returns the name of an end (0: X, 1: Y) of a dyad.
 pub(super) fn end_name(dyad: usize, end: usize) -> &'static str {
-    [["C", "B"], ["X2", "Y2"], ["X3", "Y3"]][dyad.min(2)][end.min(1)]
+    [[CRANK_PIN, "B"], ["X2", "Y2"], ["X3", "Y3"]][dyad.min(2)][end.min(1)]
 }
 
 /// Returns the name of the joint F of a dyad.

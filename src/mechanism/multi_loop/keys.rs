@@ -3,7 +3,7 @@
 //! A linkage is read from any chain of a crank and two or three dyads whose points lie on its links, whatever the names and the
 //! order, and written with the names of [`joints`](super::joints), every number to the digit.
 
-use super::joints::{end_name, joint_name};
+use super::joints::{CRANK_PIN, NamedJoint, end_name, joint_name};
 use super::{LinkPair, MultiLoop};
 use crate::mechanism::chain::{Attachment, Stage};
 use crate::mechanism::dyad_chain::kinds::{CRANK, DyadChainKind, GROUND, MAX_DYADS};
@@ -68,6 +68,15 @@ pub struct PointKeys {
     pub at: [f64; 2],
 }
 
+/// A stage of a chain, which makes one point.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StageKeys {
+    /// Two links that meet in a new joint.
+    Dyad(DyadKeys),
+    /// A point on a link.
+    Point(PointKeys),
+}
+
 /// The reason why a chain is no six-bar or eight-bar.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoMultiLoop {
@@ -94,36 +103,42 @@ pub enum NoMultiLoop {
     Linkage(#[from] LinkageError),
 }
 
-/// Where a point lies: bodies that carry it, with its place on each.
+/// The bodies that carry a point, with its place on each.
 type Places = Vec<(usize, Complex)>;
 
 impl MultiLoop {
+    /// Returns the stages of its chain in the order of assembly: each hangs on points that are made before it.
+    pub fn stages(&self) -> Vec<StageKeys> {
+        let made = |joint: &NamedJoint| joint.body != GROUND && joint.name != CRANK_PIN;
+        let stage = |joint: NamedJoint| {
+            let name = joint.name.to_owned();
+            let Some(dyad) = (0..self.dyad_count()).find(|dyad| joint_name(*dyad) == joint.name) else {
+                return StageKeys::Point(PointKeys { name, on: line_of(joint.body), at: xy(joint.at) });
+            };
+            let LinkPair { lengths, side, .. } = self.dyads[dyad];
+            let from = [0, 1].map(|end| end_name(dyad, end).to_owned());
+            StageKeys::Dyad(DyadKeys { joint: name, from, lengths, side })
+        };
+        self.joints().into_iter().filter(made).map(stage).collect()
+    }
+
     /// Returns the keys of its chain.
     pub fn keys(&self) -> ChainKeys {
-        let kind = self.kind;
-        let mut pivots = BTreeMap::from([("A".to_owned(), xy(self.crank_pivot))]);
-        let (mut dyad_keys, mut points) = (Vec::new(), Vec::new());
-        for dyad in 0..kind.dyads() {
-            let LinkPair { ends, lengths, side } = self.dyads[dyad];
-            for (end, body) in kind.anchors(dyad).into_iter().enumerate() {
-                let name = end_name(dyad, end).to_owned();
-                if body == GROUND {
-                    pivots.insert(name, xy(ends[end]));
-                } else if dyad > 0 {
-                    points.push(PointKeys { name, on: line_of(body), at: xy(ends[end]) });
-                }
-            }
-            let from = [0, 1].map(|end| end_name(dyad, end).to_owned());
-            dyad_keys.push(DyadKeys { joint: joint_name(dyad).to_owned(), from, lengths, side });
-        }
-        points.push(PointKeys { name: "P".into(), on: line_of(kind.traced()), at: xy(self.coupler_point) });
-        ChainKeys {
+        let fixed = self.joints().into_iter().filter(|joint| joint.body == GROUND);
+        let mut keys = ChainKeys {
             trace: "P".into(),
-            pivots,
-            crank: CrankKeys { pivot: "A".into(), joint: "C".into(), length: self.crank },
-            dyad: dyad_keys,
-            point: points,
+            pivots: fixed.map(|joint| (joint.name.to_owned(), xy(joint.at))).collect(),
+            crank: CrankKeys { pivot: "A".into(), joint: CRANK_PIN.into(), length: self.crank },
+            dyad: Vec::new(),
+            point: Vec::new(),
+        };
+        for stage in self.stages() {
+            match stage {
+                StageKeys::Dyad(dyad) => keys.dyad.push(dyad),
+                StageKeys::Point(point) => keys.point.push(point),
+            }
         }
+        keys
     }
 
     /// Reads a linkage from the keys of its chain.
@@ -235,7 +250,7 @@ impl MultiLoop {
 /// Returns the names of the two joints of a moving body's line.
 fn line_of(body: usize) -> [String; 2] {
     match body {
-        CRANK => ["A".into(), "C".into()],
+        CRANK => ["A".into(), CRANK_PIN.into()],
         link => {
             let (dyad, end) = ((link - 2) / 2, (link - 2) % 2);
             [end_name(dyad, end).into(), joint_name(dyad).into()]

@@ -17,7 +17,7 @@ impl MultiLoop {
 
 impl Mechanism for MultiLoop {
     fn kind(&self) -> &'static str {
-        if self.dyad_count() > 2 { "eight-bar" } else { "six-bar" }
+        self.linkage_kind().name()
     }
 
     fn joint_names(&self) -> Vec<&str> {

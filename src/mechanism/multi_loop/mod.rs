@@ -36,7 +36,7 @@ pub use joints::{Body, NamedJoint};
 pub use keys::{ChainKeys, NoMultiLoop};
 
 use super::dyad_chain::kinds::{CRANK, DyadChainKind, GROUND, MAX_BODIES, MAX_DYADS};
-use super::{AssemblyMode, Complex, FLAT_TOLERANCE, LinkageError, MAX_MAGNITUDE, dot, xy};
+use super::{AssemblyMode, Complex, FLAT_TOLERANCE, LinkageError, LinkageKind, MAX_MAGNITUDE, dot, xy};
 use crate::numbers::arithmetic::sine::sin_cos;
 
 /// A dyad of a linkage: two links that meet in a joint F.
@@ -129,7 +129,12 @@ impl MultiLoop {
         Ok(MultiLoop { kind, crank_pivot, crank, dyads: all, coupler_point })
     }
 
-    /// Returns the kind: the bodies that carry the dyads and P.
+    /// Returns the kind of linkage: a six-bar, or an eight-bar.
+    pub fn linkage_kind(&self) -> LinkageKind {
+        if self.dyad_count() > 2 { LinkageKind::EightBar } else { LinkageKind::SixBar }
+    }
+
+    /// Returns the kind of chain: the bodies that carry the dyads and P.
     pub fn chain_kind(&self) -> DyadChainKind {
         self.kind
     }

@@ -25,7 +25,7 @@ pub use mobility::SliderMobility;
 pub use motion::{SliderMotion, SliderRates, SlidingMotion};
 
 use super::four_bar::InputArc;
-use super::four_bar::coupler_curve::SingleLoop;
+use super::four_bar::coupler_curve::CrankDriven;
 use super::four_bar::position::LanePosition;
 use super::four_bar::positions::{JointColumns, LaneKernel, positions_of};
 use super::four_bar::transmission::TransmissionExtremes;
@@ -228,7 +228,7 @@ pub trait SliderLinkage: Copy + std::fmt::Debug {
     }
 }
 
-impl<S: SliderLinkage> SingleLoop for S {
+impl<S: SliderLinkage> CrankDriven for S {
     fn with_assembly(self, assembly: AssemblyMode) -> Self {
         SliderLinkage::with_assembly(self, assembly)
     }

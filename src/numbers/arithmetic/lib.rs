@@ -82,6 +82,14 @@ pub fn least_and_greatest(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
+/// Returns the centroid of points and the root of the mean square of their distances from it, their rms radius; not a number if
+/// there are none.
+pub fn centroid_and_radius(points: &[Complex]) -> (Complex, f64) {
+    let n = points.len() as f64;
+    let centre = points.iter().sum::<Complex>() / n;
+    (centre, (points.iter().map(|p| (p - centre).norm_sqr()).sum::<f64>() / n).sqrt())
+}
+
 /// Returns the lower left and the upper right corner of the box around points; [inf, -inf] if there are none.
 pub fn bounding_box(points: impl Iterator<Item = Complex> + Clone) -> [Complex; 2] {
     let [left, right] = least_and_greatest(points.clone().map(|z| z.re));

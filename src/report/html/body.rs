@@ -3,6 +3,7 @@
 use super::page::{list, paragraph, section};
 use super::{Extent, Shown, candidate, data, exact, picks, practicality, proof, table};
 use crate::files::name;
+use crate::mechanism::article;
 use crate::record::{Candidate, Record};
 use crate::report::certificate as certificate_words;
 use crate::report::text::{capitalised, clean, significant};
@@ -112,7 +113,7 @@ fn verdict(record: &Record) -> String {
     let figures = |c: &Candidate| {
         format!(
             "{} {}, rms error {}{unit}, largest {}{unit} at {noun} {}{}, worst transmission angle {}°",
-            if c.type_name().starts_with('i') { "an" } else { "a" },
+            article(c.type_name()),
             c.type_name(),
             significant(c.error.rms, 4),
             significant(c.error.max, 4),

@@ -3,8 +3,8 @@
 //! A crank that turns the other way, or the mirrored chain, draws the target reversed, or mirrored. A fit has rising phases
 //! and no reflection, so the four variants {forward, reversed} x {as it is, mirrored} stand for them.
 
-use crate::mechanism::Complex;
 use crate::mechanism::dyad_chain::{DyadChain, Placement};
+use crate::mechanism::{Complex, centroid_and_radius};
 use crate::numbers::arithmetic::lane::LANES;
 
 /// The points of a fit, evenly weighted.
@@ -93,9 +93,7 @@ impl Target {
         if points.len() < 3 || points.iter().any(|p| !(p.re.is_finite() && p.im.is_finite())) {
             return None;
         }
-        let n = points.len() as f64;
-        let centre = points.iter().sum::<Complex>() / n;
-        let radius = (points.iter().map(|p| (p - centre).norm_sqr()).sum::<f64>() / n).sqrt();
+        let (centre, radius) = centroid_and_radius(points);
         if !(radius > 0.0 && radius.is_finite()) {
             return None;
         }

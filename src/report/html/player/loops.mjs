@@ -10,36 +10,37 @@ import { hullOf } from "./tracks.mjs";
 /** A stage for linkages of every kind. */
 export class LoopsStage extends SliderStage {
   show(cycle, closed) {
-    /** The track of a linkage of several loops; null of one loop. @type {Track | null} */
-    this.track = cycle.mechanism.track ?? null;
-    for (const part of this.further ?? []) part.remove();
-    this.further = [];
-    this.furtherLetters = {};
+    /** @type {{track?: Track}} */
+    const { track } = cycle.mechanism;
+    /** That of a linkage of several loops. */
+    this.track = track;
+    for (const part of this.own ?? []) part.remove();
     this.plates = [];
-    this.parts.coupler.classList.toggle("absent", !!this.track);
-    if (this.track) {
-      const { names, links, dyads } = this.track;
-      this.rest = names.map((_, i) => i).filter((i) => !["A", "B", "C", "D", "P"].includes(names[i]));
-      this.plates = links.map((_, i) => shape("path", { class: `plate dyad${dyads[i]}` }));
+    /** The joints beside A, B, C, D, P, whose names have one letter. */
+    this.further = [];
+    this.parts.coupler.classList.toggle("absent", !!track);
+    if (track) {
+      this.plates = track.dyads.map((dyad) => shape("path", { class: `plate dyad${dyad}` }));
+      track.names.forEach((name, joint) => {
+        const [pin, letter] = [shape("circle", { class: "pin", r: 4.4 }), shape("text", { class: "letter" }, [name])];
+        if (name.length > 1) this.further.push({ joint, pin, letter });
+      });
       this.parts.bars.before(...this.plates);
-      const pins = this.rest.map(() => shape("circle", { class: "pin", r: 4.4 }));
-      this.pins = pins;
-      this.parts.P.before(...pins);
-      for (const i of this.rest) this.furtherLetters[i] = shape("text", { class: "letter" }, [names[i]]);
-      this.letters.P.before(...Object.values(this.furtherLetters));
-      this.further = [...this.plates, ...pins, ...Object.values(this.furtherLetters)];
+      this.parts.P.before(...this.further.map(({ pin }) => pin));
+      this.letters.P.before(...this.further.map(({ letter }) => letter));
     }
+    this.own = [...this.plates, ...this.further.flatMap(({ pin, letter }) => [pin, letter])];
     super.show(cycle, closed);
   }
 
   pivots() {
-    return this.track ? this.track.pivots : super.pivots();
+    return this.track?.pivots ?? super.pivots();
   }
 
   /** The places of a position: A, B, C, D, P and, of several loops, those of all joints. */
   placesOf(joints) {
     if (!this.track) return super.placesOf(joints);
-    return [this.track.pivots[0], this.track.pivots[1], joints.C, joints.D, joints.P, ...joints.places];
+    return [...this.track.pivots.slice(0, 2), joints.C, joints.D, joints.P, ...joints.places];
   }
 
   curves() {
@@ -47,8 +48,8 @@ export class LoopsStage extends SliderStage {
     const circuit = this.circuit;
     const all = super.curves();
     if (!this.track || this.look === "target") return all;
-    const path = (i) => pathThrough(circuit.map((joints) => (joints ? this.toPixel(joints.places[i]) : null)));
-    return [shape("path", { class: "pin-path", d: this.rest.map(path).join("") }), ...all];
+    const path = ({ joint }) => pathThrough(circuit.map((joints) => joints && this.toPixel(joints.places[joint])));
+    return [shape("path", { class: "pin-path", d: this.further.map(path).join("") }), ...all];
   }
 
   drawLinks(places, joints) {
@@ -65,15 +66,13 @@ export class LoopsStage extends SliderStage {
       setAll(this.plates[i], { d: corners.length < 3 ? "" : `${pathThrough(hullOf(corners))}Z` });
     });
     for (const bar of [this.parts.bars, this.parts.barsInside]) setAll(bar, { d: bars });
-    this.rest.forEach((joint, i) => {
-      const [x, y] = all[joint];
-      setAll(this.pins[i], { cx: px(x), cy: px(y) });
-      const beside = links.filter((link) => link.includes(joint)).flatMap((link) => link.map((other) => all[other]));
-      const [ax, ay] = awayFrom(
-        all[joint],
-        beside.filter((other) => other !== all[joint]),
-      );
-      setAll(this.furtherLetters[joint], { x: px(x + 17 * ax), y: px(y + 17 * ay + 5) });
-    });
+    for (const { joint, pin, letter } of this.further) {
+      const at = all[joint];
+      const [x, y] = at;
+      setAll(pin, { cx: px(x), cy: px(y) });
+      const beside = links.flatMap((link) => (link.includes(joint) ? link.map((other) => all[other]) : []));
+      const [ax, ay] = awayFrom(at, beside);
+      setAll(letter, { x: px(x + 17 * ax), y: px(y + 17 * ay + 5) });
+    }
   }
 }
