@@ -54,7 +54,7 @@ fn distances(points: &[Complex], others: &[Complex]) -> Vec<f64> {
         others.chunks(BLOCK).map(|block| (bounding_box(block.iter().copied()), block)).collect();
     // The next point's nearest is mostly in the same piece.
     let mut found_in = 0;
-    let mut nearest = |p: &Complex| {
+    let nearest = |p: &Complex| {
         let mut best = f64::INFINITY;
         let first = found_in;
         for k in 0..blocks.len() {
