@@ -2,8 +2,9 @@
 
 The linkages: two shipped four-bars and four whose plates are awkward (P on the line C-D, P on C, coincident pivots,
 P right of C-D in inches); of either kind of slider a shipped one and two others (the rail slants, crank and slider are in
-line, P lies in the slot, the block is behind the crank pin). Each also with a kerf and other sizes. What is expected is
-computed here, from the JSON export alone; the slot from 36,000 positions of a turn.
+line, P lies in the slot, the block is behind the crank pin); a shipped six-bar, and one with a third pivot, its crank a
+triangle. Each also with a kerf and other sizes. What is expected is computed here, from the JSON export alone; the slot
+from 36,000 positions of a turn.
 """
 
 import cmath
@@ -55,6 +56,55 @@ def sliders():
         path = FOLDER / f"{name}.toml"
         lines = "".join(f"{key} = {value}\n" for key, value in keys.items())
         path.write_text(f'format = 1\nunit = "{unit}"\n[{table}]\n{lines}')
+        yield path
+
+
+CHAINS = {
+    # The second dyad hangs on the crank and the coupler, the third on the second and on a pivot of its own.
+    "eight-bar": """
+trace = "P"
+pivots = { A = [0, 0], B = [60, 10], G = [40, -70] }
+crank = { pivot = "A", joint = "C", length = 15 }
+[[chain.dyad]]
+joint = "D"
+from = ["C", "B"]
+lengths = [50, 40]
+side = 1
+[[chain.point]]
+name = "S"
+on = ["A", "C"]
+at = [5, -12]
+[[chain.point]]
+name = "T"
+on = ["C", "D"]
+at = [25, -20]
+[[chain.dyad]]
+joint = "F"
+from = ["S", "T"]
+lengths = [45, 50]
+side = -1
+[[chain.point]]
+name = "U"
+on = ["S", "F"]
+at = [55, 6]
+[[chain.dyad]]
+joint = "H"
+from = ["U", "G"]
+lengths = [60, 55]
+side = 1
+[[chain.point]]
+name = "P"
+on = ["U", "H"]
+at = [20, -30]
+""",
+}
+
+
+def several_loops():
+    yield Path("problems/linkages/watt-six-bar.toml")
+    for name, keys in CHAINS.items():
+        path = FOLDER / f"{name}.toml"
+        path.write_text(f'format = 1\nunit = "mm"\n[chain]{keys}')
         yield path
 
 
@@ -231,8 +281,83 @@ class Slider:
         return area + around * reach + math.pi * reach**2 - taken
 
 
+class Chain:
+    """A six-bar or an eight-bar in millimetres: its joints, and the holes of its plates."""
+
+    names = ("coupler", "follower", "link5", "link6", "link7", "link8")
+
+    def __init__(self, path):
+        data = json.loads(export(path, "json").read_text())
+        mm = MM[data.get("unit")]
+        keys = data["linkage"]["chain"]
+        self.pivots = {name: complex(*at) * mm for name, at in keys["pivots"].items()}
+        self.crank = keys["crank"]["length"] * mm
+        self.dyads = [(d["joint"], d["from"], [x * mm for x in d["lengths"]], d["side"]) for d in keys["dyad"]]
+        self.points = {p["name"]: (tuple(p["on"]), complex(*p["at"]) * mm) for p in keys["point"]}
+        # Every link with its line and the places of its holes along and across that.
+        self.links = {"crank": (("A", "C"), [("A", 0), ("C", self.crank)])}
+        for j, (joint, ends, lengths, _) in enumerate(self.dyads):
+            for end, length, name in zip(ends, lengths, self.names[2 * j :]):
+                self.links[name] = ((end, joint), [(end, 0), (joint, length)])
+        for name, (on, at) in self.points.items():
+            next(holes for line, holes in self.links.values() if line == on).append((name, at))
+        self.path = [self.joints(k / 100)["P"] for k in range(36000)]
+
+    def slot(self, link, hole, margin):
+        return None
+
+    def reaches(self, crank_deg):
+        return True
+
+    def joints(self, crank_deg):
+        at = dict(self.pivots)
+        at["C"] = at["A"] + cmath.rect(self.crank, math.radians(crank_deg))
+        dyads, points = list(self.dyads), dict(self.points)
+        while dyads or points:
+            for name, ((p, q), own) in list(points.items()):
+                if p in at and q in at:
+                    at[name] = at[p] + (at[q] - at[p]) / abs(at[q] - at[p]) * own
+                    del points[name]
+            if dyads and all(end in at for end in dyads[0][1]):
+                joint, (p, q), (l1, l2), side = dyads.pop(0)
+                V = at[q] - at[p]
+                s = abs(V)
+                along = (s * s + l1**2 - l2**2) / (2 * s)
+                at[joint] = at[p] + V / s * complex(along, side * math.sqrt(l1**2 - along**2))
+        return at
+
+    def can_be_at(self, p):
+        return min(abs(p - q) for q in self.path[:: 50]) < max(abs(p - q) for p, q in zip(self.path, self.path[50:]))
+
+    @property
+    def bars(self):
+        """The sides of the links, between their corners; the lines between fixed pivots."""
+        pivots, at = list(self.pivots), self.joints(7)
+        sides = set(map(frozenset, zip(pivots, pivots[1:]))) | {frozenset(("A", "C"))}
+        for _, holes in self.links.values():
+            of = {at[name]: name for name, _ in holes}
+            corners = hull(list(of))
+            sides |= {frozenset((of[p], of[q])) for p, q in zip(corners, corners[1:] + corners[:1])}
+        return [tuple(side) for side in sides]
+
+    def holes(self, hole=0.8, margin=1.1):
+        origin = self.pivots["A"]
+        ground = [at - origin for at in self.pivots.values()]
+        return {"ground": ground} | {link: [at for _, at in holes] for link, (_, holes) in self.links.items()}
+
+    def area(self, link, reach, hole, margin=1.1):
+        """The rounded hull of the holes, less the holes (Steiner)."""
+        holes = self.holes()[link]
+        corners = hull([complex(z) for z in holes])
+        pairs = list(zip(corners, corners[1:] + corners[:1]))
+        area = sum(0.5 * (p.conjugate() * q).imag for p, q in pairs)
+        around = sum(abs(q - p) for p, q in pairs)
+        return area + around * reach + math.pi * reach**2 - len(holes) * math.pi * hole**2 / 4
+
+
 def kind_of(path):
-    return Slider if "slider_crank]" in path.read_text() else Linkage
+    text = path.read_text()
+    return Chain if "[chain]" in text else Slider if "slider_crank]" in text else Linkage
 
 
 def same(x, y, tolerance=1e-9):
@@ -263,17 +388,27 @@ def check_dxf(path):
     circles = [e for e in space.query("CIRCLE") if e.dxf.layer == "JOINTS"]
     drawn = {name: at for name, at in joints.items() if name != "D" or not hasattr(linkage, "h")}
     assert len(circles) == len(drawn) and all(e.dxf.radius == 0.25 for e in circles)
-    for circle, at in zip(circles, drawn.values()):
-        same(complex(circle.dxf.center.x, circle.dxf.center.y), at)
+    centres = [complex(circle.dxf.center.x, circle.dxf.center.y) for circle in circles]
+    if isinstance(linkage, Chain):
+        # In an order of their own.
+        centres = [min(centres, key=lambda centre: abs(centre - at)) for at in drawn.values()]
+    for centre, at in zip(centres, drawn.values()):
+        same(centre, at)
     ends = [
         (complex(e.dxf.start.x, e.dxf.start.y), complex(e.dxf.end.x, e.dxf.end.y))
         for e in space.query("LINE[layer=='SKELETON']")
     ]
     bars = [(joints[p], joints[q]) for p, q in linkage.bars if abs(joints[p] - joints[q]) > 1e-9]
-    assert len(ends) == len(bars)
-    for (start, end), (p, q) in zip(ends, bars):
-        same(start, p)
-        same(end, q)
+    if isinstance(linkage, Chain):
+        # The sides of a link in the order of its hull, from whichever corner; the crank has its line beside its triangle.
+        near = lambda one, other: all(min(abs(z - w) for w in other) < 1e-6 for z in one)
+        assert all(any(near(bar, line) for line in ends) for bar in bars) and len(ends) <= len(bars) + 1
+        assert all(any(near(line, bar) for bar in bars) for line in ends)
+    else:
+        assert len(ends) == len(bars)
+        for (start, end), (p, q) in zip(ends, bars):
+            same(start, p)
+            same(end, q)
     curves = space.query("LWPOLYLINE[layer=='CURVE']")
     assert curves and all(e.closed and len(e) > 300 for e in curves)
     assert all(linkage.can_be_at(complex(*p[:2])) for e in curves for p in e.get_points())
@@ -391,13 +526,13 @@ def check_openscad(path):
         assert done.returncode == 0 and "WARNING" not in done.stderr, done.stderr
         mesh = trimesh.load_mesh(out)
         assert mesh.is_watertight
-        assert mesh.body_count == 4, mesh.body_count
+        assert mesh.body_count == len(linkage.holes()), mesh.body_count
         assert abs(mesh.volume - expected) < 0.02 * expected, (mesh.volume, expected)
 
 
 CHECK = {"dxf": check_dxf, "stl": check_stl, "openscad": check_openscad}[KIND]
 count = 0
-for path in (*linkages(), *sliders()):
+for path in (*linkages(), *sliders(), *several_loops()):
     CHECK(path)
     count += 1
 print(f"{KIND}: {count} linkages, no complaint")

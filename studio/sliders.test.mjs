@@ -164,18 +164,22 @@ test("a six-bar is asked for, follows a point, moves with all of its joints, and
   await drawer(page, "details");
   await page.waitForSelector("#details .details-charts figure");
   assert.ok((await page.locator("#details .stage .plate").count()) >= 4);
-  // Plates are not made of six-bars yet: neither is asked for them.
-  const formats = page.locator("#format option:not([disabled])");
-  assert.deepEqual(await formats.evaluateAll((all) => all.map((one) => one.value)), [
-    "csv",
-    "points",
-    "toml",
-    "json",
-    "sheet",
-    "html",
-  ]);
-  assert.match(await page.locator("#no-plates").innerText(), /no plates yet/);
   await shot(page, "six-bar-details");
+  for (const [format, says] of [
+    ["dxf-plates", /LINK6/],
+    ["scad", /module link6/],
+    ["cut-list", /6 plates, 7 pins/],
+  ]) {
+    await page.locator("#format").selectOption(format);
+    const { bytes } = await saved(page, () => page.locator("#export").click());
+    assert.match(String(bytes), says, format);
+  }
+  // Its six plates, and how they lie above each other.
+  await tab(page, "build");
+  await page.waitForSelector("#plates:not([hidden]) svg path");
+  assert.equal(await page.locator("#plates svg > g[id^=link]").count(), 2);
+  assert.match(await page.locator("#layers").textContent(), /link5/);
+  await shot(page, "six-bar-plates");
   await end();
   // Nothing was asked for that is refused.
   assert.deepEqual(said, []);

@@ -270,6 +270,9 @@ def test_a_six_bar_of_a_result_is_a_chain_that_draws_the_path(root: Path, tmp_pa
     file = tmp_path / "six-bar.toml"
     file.write_text(chain.to_toml())
     assert lw.load(file).names == chain.names
+    assert b"LINK6" in lw.export(chain, "dxf-plates", unit="mm", scale=20)
+    built = lw.build(best)
+    assert "link5" in built.text and len(built.data["distances"]) == 28
     again = lw.compare(chain, target=lw.path(points.tolist(), closed=True)).to_frame()
     assert again["rms"].max() == pytest.approx(best.error.rms, rel=0.02)
 

@@ -16,8 +16,13 @@ use crate::task::{Output, TaskKind};
 /// The number of significant digits of lengths and rates.
 const DIGITS: usize = 3;
 
-/// Counts of dimensions in words.
+/// Counts of dimensions and of plates in words.
 const COUNTS: [&str; 10] = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];
+
+/// Returns a count in words, as far as there are any.
+fn count(n: usize) -> String {
+    COUNTS.get(n).map_or_else(|| n.to_string(), |word| (*word).to_owned())
+}
 
 /// Returns the whole text, for a standard deviation `tolerance` of each dimension.
 pub fn practicality_text(
@@ -133,20 +138,17 @@ impl Words {
     /// Returns the stacking, its obstacles and the plates that pass over ends of pins, one line for each. A pin may have
     /// a head as wide as the plates around it.
     pub(super) fn layers(&self, practicality: &Practicality, layering: &Layering) -> Vec<String> {
-        const NO_STACK: &str =
-            "No stacking of the four plates works, each in one layer, the ground in one piece.";
-        let last = layering.links[3].name();
-        let always = format!(
-            "What always works: the ground on both sides, in five layers: ground, crank, coupler, {last}, ground. The two \
-             halves are joined outside of where the links reach."
+        let no_stack = format!(
+            "No stacking of the {} plates works, each in one layer, the ground in one piece.",
+            count(layering.links.len())
         );
-        let joined = format!(
-            "Plates that a pin joins (ground-crank, crank-coupler, coupler-{last}, {last}-ground) overlap at it and never \
-             share a layer."
-        );
+        let joined: Vec<String> =
+            layering.joined().iter().map(|[one, other]| format!("{}-{}", one.name(), other.name())).collect();
+        let joined =
+            format!("Plates that a pin joins ({}) overlap at it and never share a layer.", joined.join(", "));
         let mut out = vec![match &layering.stack {
             Some(stack) => format!("{} layers, from below: {}.", stack.layers.len(), in_layers(stack)),
-            None => self.colour.paint(Ink::Bad, NO_STACK),
+            None => self.colour.paint(Ink::Bad, &no_stack),
         }];
         out.extend(layering.free_pairs.iter().map(|pair| self.pair(pair)));
         match &layering.stack {
@@ -158,7 +160,7 @@ impl Words {
             }
             None => {
                 out.extend(layering.crossings().map(|p| self.crossing(p)));
-                out.push(always);
+                out.push(always(&layering.links));
             }
         }
         out.push(joined);
@@ -181,11 +183,8 @@ impl Words {
     }
 
     fn crossing(&self, p: &PinPlate) -> String {
-        let (pin, plate) = (p.pin.name(), p.plate.name());
-        format!(
-            "A pin {pin} that stood through the layer of the {plate} would cross it ({}).",
-            at(&p.closest)
-        )
+        let (pin, plate) = (p.pin.name(), p.plate.in_words());
+        format!("A pin {pin} that stood through the layer of {plate} would cross it ({}).", at(&p.closest))
     }
 
     fn through(&self, layering: &Layering, stack: &Stack, pin: Joint, layer: usize) -> String {
@@ -194,9 +193,9 @@ impl Words {
             .filter_map(|plate| layering.pins_plates.iter().find(|p| p.pin == pin && p.plate == *plate))
             .map(|p| {
                 format!(
-                    "never nearer than {} to the {} ({})",
+                    "never nearer than {} to {} ({})",
                     self.length(p.closest.value),
-                    p.plate.name(),
+                    p.plate.in_words(),
                     at(&p.closest)
                 )
             })
@@ -211,9 +210,9 @@ impl Words {
             _ => "under".to_owned(),
         };
         format!(
-            "The {} (layer {}) passes {beside} the end of pin {} ({}): end the pin flush with layer {}, without a head, \
+            "{} (layer {}) passes {beside} the end of pin {} ({}): end the pin flush with layer {}, without a head, \
              nut or motor there, or leave room for it by spacers.",
-            pair.plate.name(),
+            capitalised(&pair.plate.in_words()),
             plate + 1,
             pair.pin.name(),
             at(&pair.closest),
@@ -275,7 +274,7 @@ impl Words {
             false => self.length(value),
         };
         let what = if of_function { "the output" } else { "the path" };
-        let count = COUNTS.get(felt.dimensions.len()).copied().unwrap_or_default();
+        let count = count(felt.dimensions.len());
         let has = |name: &str| felt.dimensions.iter().any(|d| d.name == name);
         let mut text = format!(
             "The worst dimension is {worst}. With every dimension off by {} (1 sigma, the {count} above independent of \
@@ -297,6 +296,20 @@ impl Words {
             ));
         }
         text
+    }
+}
+
+/// Returns the construction without a stacking of plates that are each in one layer.
+fn always(links: &[Link]) -> String {
+    match links[..] {
+        [.., last] if links.len() == 4 => format!(
+            "What always works: the ground on both sides, in five layers: ground, crank, coupler, {}, ground. The two \
+             halves are joined outside of where the links reach.",
+            last.name()
+        ),
+        _ => "What helps: a link in two halves, one on either side of the others, joined outside of where they reach; \
+            smaller holes and margins; or another candidate."
+            .to_owned(),
     }
 }
 

@@ -41,7 +41,7 @@ export class BuildPanel {
   ]);
   /** What is in the file to cut. */
   private cutting = element("p", { class: "note", id: "cutting" });
-  private nothing = element("p", { class: "note", id: "no-plates" });
+  private nothing = element("p", { class: "note" }, ["Draw a path first: its linkage is built here."]);
   /** That it was found for something else than what is drawn. */
   private elsewhere = element("p", { class: "note", id: "elsewhere" });
   private timer = 0;
@@ -134,13 +134,10 @@ export class BuildPanel {
   }
 
   private async show() {
-    const any = this.host.chosen();
-    const several = any?.shown.track;
-    const chosen = several ? null : any;
+    const chosen = this.host.chosen();
     this.legs.hidden = !chosen || !this.isWalker();
     this.title.textContent = `Plates of ${this.host.name()}`;
     for (const part of [
-      this.fault,
       this.title,
       this.plates,
       this.dxf,
@@ -150,9 +147,6 @@ export class BuildPanel {
     ])
       part.hidden = !chosen;
     this.nothing.hidden = chosen !== null;
-    this.nothing.textContent = several
-      ? "Six-bars and eight-bars have no plates yet."
-      : "Draw a path first: its linkage is built here.";
     const elsewhere = chosen ? pinnedFor(chosen.task, this.host.task()) : "";
     this.elsewhere.textContent = elsewhere && `This linkage is ${elsewhere}: its plates are not of this drawing.`;
     if (!chosen) return;

@@ -25,9 +25,6 @@ const FORMATS: [string, string, string][] = [
   ["html", "html", "Report (HTML)"],
 ];
 
-/** Those that a six-bar has, which is not laid out as plates. */
-const WITHOUT_PLATES = /^(csv|points|toml|json|sheet|html)$/;
-
 export class DetailsPanel {
   private panel = element("details", { class: "desk-card", id: "details", name: "desk" }) as HTMLDetailsElement;
   private title = element("h3", { id: "details-title" });
@@ -173,8 +170,6 @@ export class DetailsPanel {
       ),
     );
     this.candidates.value = String(this.job?.rank ?? 1);
-    for (const option of this.format.options) option.disabled = !!shown.track && !WITHOUT_PLATES.test(option.value);
-    if (this.format.selectedOptions[0].disabled) this.format.value = "toml";
     this.player?.pause();
     this.stage.replaceChildren();
     this.charts.replaceChildren();

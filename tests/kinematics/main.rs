@@ -4,12 +4,14 @@ mod chain;
 mod cognates;
 #[path = "../common/coupler_points.rs"]
 mod coupler_points;
+mod dyad_chain_duals;
 mod dyad_chains;
 mod gradients;
 mod literature;
 mod loop_closure;
 mod mobility;
 mod motion;
+mod multi_loop_plates;
 mod multi_loops;
 mod position;
 mod practicality;

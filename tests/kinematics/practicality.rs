@@ -23,7 +23,7 @@ fn holes(l: &FourBar, link: Link, j: &Joints) -> Vec<Complex> {
         Link::Ground => vec![l.crank_pivot(), l.follower_pivot()],
         Link::Crank => vec![l.crank_pivot(), j.crank_pin],
         Link::Coupler => vec![j.crank_pin, j.follower_pin, j.coupler_point],
-        Link::Follower | Link::Block => vec![l.follower_pivot(), j.follower_pin],
+        _ => vec![l.follower_pivot(), j.follower_pin],
     }
 }
 
@@ -92,7 +92,7 @@ fn positions(sweep: &Sweep, n: usize) -> Vec<(f64, AssemblyMode, Joints)> {
 
 /// How far the outline of one plate stays from another plate at a position; 0 or less where it enters it.
 fn entered(l: &FourBar, points: &[Complex], plate: &Plate, other: &Plate, j: &Joints) -> f64 {
-    let at = plate.placement(l, j).expect("a four-bar");
+    let at = plate.placement(l, j);
     let hull = holes(l, other.link, j);
     points.iter().map(|p| to_hull(at.of(*p), &hull) - other.radius).fold(f64::INFINITY, f64::min)
 }
@@ -534,7 +534,7 @@ fn a_motor_widens_the_plates_at_its_holes_and_stands_at_a() {
     let wider = |link| match link {
         Link::Ground => 8.0,
         Link::Crank => 1.0,
-        Link::Coupler | Link::Follower | Link::Block => 0.0,
+        _ => 0.0,
     };
     let shaft = |pin| if pin == Joint::A { 1.0 } else { 0.0 };
     for (one, other) in plain.free_pairs.iter().zip(&wide.free_pairs) {

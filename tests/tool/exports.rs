@@ -2,6 +2,7 @@
 
 mod dxf;
 mod motor;
+mod several_loops;
 mod sliders;
 
 use self::dxf::tags;

@@ -16,14 +16,6 @@ use crate::task::Problem;
 /// Runs the command.
 pub fn run(options: &Options) -> Result<Ended, Ended> {
     let given = Subject::of(options)?;
-    if given.linkage.multi_loop().is_some() {
-        terminal::complain(&format!(
-            "{}: six-bars and eight-bars have no plates yet; `linkwright report` draws them, and `export --format toml` \
-             writes their lengths",
-            given.title
-        ));
-        return Err(Ended::Bad);
-    }
     let Some(sweep) = &given.sweep else { return Err(nothing(&given.title)) };
     let usual = || Build::usual_hole_of(sweep, given.unit);
     let Some(hole) = options.hole.or_else(usual) else { return Err(no_room(&given)) };

@@ -1,9 +1,9 @@
 //! Clearances: least distances between plates, pins and joints over a motion.
 
 use super::closest::{Closest, closest};
-use super::sweep::{Reach, Sweep};
+use super::sweep::{Position, Positions, Reach, Sweep};
 pub use crate::mechanism::plates::Joint;
-use crate::mechanism::plates::{Guide, Link, Parts, Placement, Plate, Sizes, parts};
+use crate::mechanism::plates::{Guide, Link, Parts, Plate, Sizes, parts};
 use crate::mechanism::{CrankLinkage, FourBar, LoopJoints, Unit, length};
 
 /// Radii of the plates and pins of a linkage.
@@ -110,11 +110,8 @@ fn wanted_hole(longest: f64, unit: Option<Unit>) -> f64 {
 /// Returns the bound of a joint's displacement.
 fn joint_moves(joint: Joint, reach: &Reach, guide: Option<&Guide>) -> f64 {
     match joint {
-        Joint::A | Joint::B => 0.0,
-        Joint::C => reach.crank_pin,
-        Joint::D => reach.follower_pin,
-        Joint::P => reach.coupler_point,
-        Joint::E | Joint::F => reach.follower_pin + guide.map_or(0.0, |guide| guide.half) * reach.block_chord,
+        Joint::E | Joint::F => reach.of(Joint::D) + guide.map_or(0.0, |guide| guide.half) * reach.block_chord,
+        _ => reach.of(joint),
     }
 }
 
@@ -122,21 +119,19 @@ fn joint_moves(joint: Joint, reach: &Reach, guide: Option<&Guide>) -> f64 {
 fn plate_moves(plate: &Plate, reach: &Reach) -> f64 {
     match plate.link {
         Link::Ground => 0.0,
-        Link::Crank => reach.crank_pin,
-        Link::Follower => reach.follower_pin,
-        Link::Coupler if plate.slot.is_some() => reach.crank_pin + plate.farthest() * reach.coupler_chord,
-        Link::Coupler => reach.coupler(),
-        Link::Block => reach.follower_pin + plate.farthest() * reach.block_chord,
+        Link::Coupler if plate.slot.is_some() => reach.of(Joint::C) + plate.farthest() * reach.coupler_chord,
+        Link::Block => reach.of(Joint::D) + plate.farthest() * reach.block_chord,
+        _ => plate.holes.iter().map(|hole| reach.of(hole.joint)).fold(0.0, f64::max),
     }
 }
 
 /// The plates and pins of a linkage, with its motion.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Workpieces<'a> {
-    sweep: &'a Sweep,
+    positions: Positions<'a>,
     build: Build,
     parts: Parts,
-    plates: [Plate; 4],
+    plates: Vec<Plate>,
 }
 
 impl<'a> Workpieces<'a> {
@@ -144,7 +139,7 @@ impl<'a> Workpieces<'a> {
     pub fn new(sweep: &'a Sweep, build: Build) -> Option<Self> {
         let parts = build.parts(sweep)?;
         let plates = parts.plates(|link| build.radius_of(link));
-        Some(Workpieces { sweep, build, parts, plates })
+        Some(Workpieces { positions: Positions::of(sweep), build, parts, plates })
     }
 
     /// Returns the parts.
@@ -156,22 +151,28 @@ impl<'a> Workpieces<'a> {
         &self.plates[link.place()]
     }
 
-    fn placement(&self, link: Link, at: &LoopJoints) -> Placement {
-        self.parts.placement(link, at)
+    fn position(&self, at: impl Into<LoopJoints>) -> Position {
+        Position::new(self.parts.linkage(), at.into())
     }
 
     /// Computes the distance between two plates at a position, below zero if they overlap.
     pub fn between_plates_at(&self, one: Link, other: Link, at: impl Into<LoopJoints>) -> f64 {
-        let at = at.into();
-        let (of_one, of_other) = (self.placement(one, &at), self.placement(other, &at));
+        self.plates_in(one, other, &self.position(at))
+    }
+
+    fn plates_in(&self, one: Link, other: Link, position: &Position) -> f64 {
+        let (of_one, of_other) = (self.parts.frame(one, position), self.parts.frame(other, position));
         self.plate(one).separation(&of_one, self.plate(other), &of_other)
     }
 
     /// Computes the distance between a pin and a plate at a position, below zero if they overlap.
     pub fn pin_to_plate_at(&self, pin: Joint, plate: Link, at: impl Into<LoopJoints>) -> f64 {
-        let at = at.into();
-        let to = self.parts.joint(pin, &at);
-        self.plate(plate).distance(&self.placement(plate, &at), to) - self.build.radius_at(pin)
+        self.pin_and_plate_in(pin, plate, &self.position(at))
+    }
+
+    fn pin_and_plate_in(&self, pin: Joint, plate: Link, position: &Position) -> f64 {
+        let to = self.parts.joint_in(pin, position);
+        self.plate(plate).distance(&self.parts.frame(plate, position), to) - self.build.radius_at(pin)
     }
 
     /// Computes the least distance between two plates over the motion, below zero if they overlap. `None` if the loop
@@ -179,23 +180,23 @@ impl<'a> Workpieces<'a> {
     pub fn between_plates(&self, one: Link, other: Link) -> Option<Closest> {
         let moves =
             |reach: &Reach| plate_moves(self.plate(one), reach) + plate_moves(self.plate(other), reach);
-        closest(self.sweep, |at| self.between_plates_at(one, other, at), moves)
+        closest(&self.positions, |at| self.plates_in(one, other, at), moves)
     }
 
     /// Computes the least distance between a pin and a plate over the motion.
     pub fn pin_to_plate(&self, pin: Joint, plate: Link) -> Option<Closest> {
         let guide = self.parts.guide();
         let moves = |reach: &Reach| joint_moves(pin, reach, guide) + plate_moves(self.plate(plate), reach);
-        closest(self.sweep, |at| self.pin_to_plate_at(pin, plate, at), moves)
+        closest(&self.positions, |at| self.pin_and_plate_in(pin, plate, at), moves)
     }
 
     /// Computes the least distance between the surfaces of two pins over the motion.
     pub fn between_pins(&self, one: Joint, other: Joint) -> Option<Closest> {
-        let apart = |at: &LoopJoints| length(self.parts.joint(one, at) - self.parts.joint(other, at));
+        let apart = |at: &Position| length(self.parts.joint_in(one, at) - self.parts.joint_in(other, at));
         let guide = self.parts.guide();
         let moves = |reach: &Reach| joint_moves(one, reach, guide) + joint_moves(other, reach, guide);
         let radii = self.build.radius_at(one) + self.build.radius_at(other);
-        closest(self.sweep, |at| apart(at) - radii, moves)
+        closest(&self.positions, |at| apart(at) - radii, moves)
     }
 }
 
@@ -210,28 +211,27 @@ pub struct PivotDistance {
     pub fixed: bool,
 }
 
-/// Computes the least distances between the centres of A, B, C, D and P, as many as a linkage has, over the motion, nearest
+/// Computes the least distances between the centres of the joints and P over the motion, nearest
 /// first (ties in the order of the letters). `None` if the loop is open in the motion.
 pub fn pivot_distances(sweep: &Sweep) -> Option<Vec<PivotDistance>> {
     let linkage = &sweep.linkage;
-    let (points, pins) = (parts::points(linkage), parts::pins(linkage));
-    let carries = |link: Link, joint: Joint| match joint {
-        Joint::P => link == Link::Coupler,
-        _ => pins.iter().any(|pin| pin.joint == joint && pin.joins.contains(&link)),
-    };
-    let place =
-        |joint: Joint, at: &LoopJoints| parts::joint_at(linkage, joint, at).unwrap_or(at.joints.follower_pin);
+    let (points, links) = (parts::points(linkage), parts::links(linkage));
+    let positions = Positions::of(sweep);
+    let place = |joint: Joint, at: &Position| parts::joint_at(linkage, joint, at);
     let mut distances = Vec::new();
     for (i, one) in points.iter().copied().enumerate() {
         for other in points.iter().copied().skip(i + 1) {
-            let links = [Link::Ground, Link::Crank, Link::Coupler, Link::Follower, Link::Block];
-            let fixed = links.into_iter().any(|link| carries(link, one) && carries(link, other));
-            let apart = |at: &LoopJoints| length(place(one, at) - place(other, at));
+            let carried = |link: Link| [one, other].iter().all(|joint| parts::carries(linkage, link, *joint));
+            let fixed = links.iter().any(|link| carried(*link));
+            let apart = |at: &Position| match (place(one, at), place(other, at)) {
+                (Some(one), Some(other)) => length(one - other),
+                _ => f64::INFINITY,
+            };
             let moves = |reach: &Reach| match fixed {
                 true => 0.0,
                 false => joint_moves(one, reach, None) + joint_moves(other, reach, None),
             };
-            let closest = closest(sweep, apart, moves)?;
+            let closest = closest(&positions, apart, moves)?;
             distances.push(PivotDistance { between: [one.name(), other.name()], closest, fixed });
         }
     }

@@ -4,8 +4,8 @@
 //! value in the middle less what [`Sweep::reach`] allows; the stretch with the least such bound is halved until
 //! the best value found is within a margin of it. Nothing between two samples can be missed.
 
-use super::sweep::{Reach, Stretch, Sweep};
-use crate::mechanism::{AssemblyMode, LoopJoints};
+use super::sweep::{Position, Positions, Reach, Stretch};
+use crate::mechanism::AssemblyMode;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -65,16 +65,17 @@ impl Ord for Piece {
 /// `moves` bounds the change of `measure` within a stretch by the joints' displacements. `None` if the loop is open in
 /// the motion, or the motion is empty.
 pub fn closest(
-    sweep: &Sweep,
-    measure: impl Fn(&LoopJoints) -> f64,
+    positions: &Positions<'_>,
+    measure: impl Fn(&Position) -> f64,
     moves: impl Fn(&Reach) -> f64,
 ) -> Option<Closest> {
+    let sweep = positions.sweep;
     let margin = MARGIN * sweep.linkage.longest_link();
     let mut best: Option<Closest> = None;
     let mut heap = BinaryHeap::new();
     let put = |stretch: Stretch, heap: &mut BinaryHeap<Piece>, best: &mut Option<Closest>| {
-        let (joints, reach) = sweep.reach(&stretch)?;
-        let value = measure(&joints);
+        let (position, reach) = positions.middle_of(&stretch)?;
+        let value = measure(&position);
         let bound = value - moves(&reach);
         if best.is_none_or(|best| value < best.value) {
             let (crank_angle, assembly) = (stretch.middle(), stretch.assembly);
@@ -101,7 +102,7 @@ pub fn closest(
             || evaluations >= MOST
             || indivisible
         {
-            let refined = refine(sweep, &found, &measure);
+            let refined = refine(positions, &found, &measure);
             return Some(Closest { bound: piece.bound.min(refined.value), ..refined });
         }
         put(Stretch { to: middle, ..piece.stretch }, &mut heap, &mut best)?;
@@ -112,20 +113,20 @@ pub fn closest(
 }
 
 /// Refines the best value, by golden section around its crank angle and at the ends of the motion.
-fn refine(sweep: &Sweep, found: &Closest, measure: &impl Fn(&LoopJoints) -> f64) -> Closest {
+fn refine(positions: &Positions<'_>, found: &Closest, measure: &impl Fn(&Position) -> f64) -> Closest {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     const ROUNDS: usize = 50;
     /// Half-width of the search interval, radians.
     const AROUND: f64 = 0.02;
     let mut best = *found;
     let mut try_at = |angle: f64, assembly: AssemblyMode| {
-        let value = sweep.linkage.joints_with(angle, assembly).map_or(f64::INFINITY, |at| measure(&at));
+        let value = positions.at(angle, assembly).map_or(f64::INFINITY, |at| measure(&at));
         if value < best.value {
             best = Closest { value, crank_angle: angle, assembly, bound: value };
         }
         value
     };
-    for stretch in &sweep.stretches {
+    for stretch in &positions.sweep.stretches {
         try_at(stretch.from, stretch.assembly);
         try_at(stretch.to, stretch.assembly);
         if stretch.assembly != found.assembly

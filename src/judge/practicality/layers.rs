@@ -2,11 +2,11 @@
 //!
 //! Plates joined by a pin overlap at that pin, so each of the pairs ground-crank, crank-coupler, coupler-follower and
 //! follower-ground needs two layers. The pairs crank-follower and coupler-ground may share a plane if they stay apart over
-//! the whole motion. A block of a slider takes the place of the follower; its guide pins join it to the plate with the
+//! the whole motion. Six-bars and eight-bars have more of both. A block of a slider takes the place of the follower; its guide pins join it to the plate with the
 //! slot. A plate with a slot counts as if it were filled, except for the pins that always lie in the slot. A pin passes
 //! through all layers from one of its plates to the other; in those between, it must stay clear of every plate there and of
 //! every other pin that passes through them. Pins end flush with their plates, and every plate is one piece in one layer.
-//! All stackings are tried: there are at most 4^4.
+//! All stackings are tried, a plate at a time: at most n^n of n plates, less those that begin with a crossing.
 //!
 //! Two parts are clear if the proved bound of [`super::closest`] is above zero. Parts that touch within its margin
 //! count as crossing.
@@ -19,9 +19,14 @@ use crate::mechanism::plates::{Link, Pin};
 /// The pairs of plates of a four-bar that no pin joins.
 pub const FREE_PAIRS: [[Link; 2]; 2] = [[Link::Crank, Link::Follower], [Link::Coupler, Link::Ground]];
 
-/// Returns the pairs of links around a loop that no pin joins.
-fn free_pairs([ground, crank, coupler, last]: [Link; 4]) -> [[Link; 2]; 2] {
-    [[crank, last], [coupler, ground]]
+/// Returns the pairs of links that no pin joins, those with the ground last.
+fn free_pairs(links: &[Link], pins: &[Pin]) -> Vec<[Link; 2]> {
+    let from_crank: Vec<Link> = links.iter().copied().cycle().skip(1).take(links.len()).collect();
+    let pairs = from_crank
+        .iter()
+        .enumerate()
+        .flat_map(|(i, one)| from_crank[i + 1..].iter().map(|other| [*one, *other]));
+    pairs.filter(|pair| !pins.iter().any(|pin| pair.iter().all(|link| pin.joins.contains(link)))).collect()
 }
 
 /// Two plates that no pin joins, with the least distance between them.
@@ -56,18 +61,20 @@ pub struct Stack {
 /// The distances that decide the layers, and the resulting stacking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layering {
-    /// The links around the loop.
-    pub links: [Link; 4],
+    /// The links.
+    pub links: Vec<Link>,
+    /// The link that carries P.
+    pub traced: Link,
     /// The pins that join them.
     pub all_pins: Vec<Pin>,
-    /// The two pairs of plates that could share a plane.
+    /// The pairs of plates that could share a plane.
     pub free_pairs: Vec<PlatePair>,
     /// Pins and the plates that they do not join.
     pub pins_plates: Vec<PinPlate>,
     /// Pairs of pins.
     pub pins: Vec<([Joint; 2], Closest)>,
     /// The stacking of the fewest layers; of several the one whose pins pass through the fewest layers, then with the
-    /// coupler outermost (so that P can be reached), then with the ground lowest. `None` if there is none.
+    /// plate of P outermost (so that P can be reached), then with the ground lowest. `None` if there is none.
     pub stack: Option<Stack>,
 }
 
@@ -93,59 +100,123 @@ pub fn layering(sweep: &Sweep, build: Build) -> Option<Layering> {
     let pieces = Workpieces::new(sweep, build)?;
     let parts = pieces.parts();
     let links = parts.links();
+    let all_pins = parts.pins();
     let mut free_pairs = Vec::new();
-    for plates in self::free_pairs(links) {
+    for plates in self::free_pairs(&links, &all_pins) {
         free_pairs.push(PlatePair { plates, closest: pieces.between_plates(plates[0], plates[1])? });
     }
     let mut pins_plates = Vec::new();
     let mut pins = Vec::new();
-    for (i, Pin { joint: pin, joins }) in parts.pins().iter().copied().enumerate() {
+    for (i, Pin { joint: pin, joins }) in all_pins.iter().copied().enumerate() {
         let strangers =
-            links.into_iter().filter(|link| !joins.contains(link) && !parts.stands_in_slot(pin, *link));
-        for plate in strangers {
+            links.iter().filter(|link| !joins.contains(link) && !parts.stands_in_slot(pin, **link));
+        for plate in strangers.copied() {
             pins_plates.push(PinPlate { pin, plate, closest: pieces.pin_to_plate(pin, plate)? });
         }
-        for other in parts.pins().iter().skip(i + 1) {
+        for other in &all_pins[i + 1..] {
             pins.push(([pin, other.joint], pieces.between_pins(pin, other.joint)?));
         }
     }
-    let all_pins = parts.pins().to_vec();
-    let mut layering = Layering { links, all_pins, free_pairs, pins_plates, pins, stack: None };
+    let mut layering =
+        Layering { links, traced: parts.traced(), all_pins, free_pairs, pins_plates, pins, stack: None };
     layering.stack = layering.best();
     Some(layering)
 }
 
-/// The layer of each plate, in the order around the loop.
-type Places = [usize; 4];
+/// The layer of each plate, in the order of the links.
+type Places = Vec<usize>;
 
-fn layer(places: &Places, link: Link) -> usize {
+fn layer(places: &[usize], link: Link) -> usize {
     places[link.place()]
 }
 
 /// Returns the layers strictly between the two plates of a pin.
-fn between(places: &Places, pin: &Pin) -> std::ops::Range<usize> {
+fn between(places: &[usize], pin: &Pin) -> std::ops::Range<usize> {
     let [one, other] = pin.joins.map(|link| layer(places, link));
     one.min(other) + 1..one.max(other).max(one.min(other) + 1)
 }
 
+/// What must not come together in a stacking.
+struct Crossings {
+    /// The plates below a plate in the order of the links that may not share its layer, by plate.
+    apart: Vec<Vec<usize>>,
+    /// Pins and plates that may not be in a layer between the pin's two.
+    pins_plates: Vec<(Pin, Link)>,
+    /// Pairs of pins that may not pass through one layer.
+    pins: Vec<[Pin; 2]>,
+}
+
+impl Crossings {
+    fn of(layering: &Layering) -> Self {
+        let n = layering.links.len();
+        let mut apart = vec![Vec::new(); n];
+        let joined = layering.all_pins.iter().map(|pin| pin.joins);
+        let crossing =
+            layering.free_pairs.iter().filter(|pair| !clear(&pair.closest)).map(|pair| pair.plates);
+        for pair in joined.chain(crossing) {
+            let [one, other] = pair.map(Link::place);
+            apart[one.max(other)].push(one.min(other));
+        }
+        let pin = |joint: Joint| layering.all_pins.iter().find(|pin| pin.joint == joint).copied();
+        let pins_plates = layering.pins_plates.iter().filter(|p| !clear(&p.closest));
+        let pins = layering.pins.iter().filter(|(_, closest)| !clear(closest));
+        Crossings {
+            apart,
+            pins_plates: pins_plates.filter_map(|p| Some((pin(p.pin)?, p.plate))).collect(),
+            pins: pins.filter_map(|([one, other], _)| Some([pin(*one)?, pin(*other)?])).collect(),
+        }
+    }
+
+    /// Calls a function with every stacking of `count` layers, all of them used, in which no plates share a layer that may not.
+    fn each_of(&self, count: usize, places: &mut Places, visit: &mut impl FnMut(&Places)) {
+        let plate = places.len();
+        if plate == self.apart.len() {
+            if (0..count).all(|layer| places.contains(&layer)) {
+                visit(places);
+            }
+            return;
+        }
+        for layer in 0..count {
+            if self.apart[plate].iter().all(|other| places[*other] != layer) {
+                places.push(layer);
+                self.each_of(count, places, visit);
+                places.pop();
+            }
+        }
+    }
+
+    /// Returns whether no pin crosses a plate or another pin.
+    fn allow(&self, places: &Places) -> bool {
+        let side_by_side = |[one, other]: &[Pin; 2]| {
+            let [one, other] = [one, other].map(|pin| between(places, pin));
+            one.start.max(other.start) < one.end.min(other.end)
+        };
+        !self.pins_plates.iter().any(|(pin, plate)| between(places, pin).contains(&layer(places, *plate)))
+            && !self.pins.iter().any(side_by_side)
+    }
+}
+
 impl Layering {
     fn best(&self) -> Option<Stack> {
+        let crossings = Crossings::of(self);
+        let through =
+            |places: &Places| self.all_pins.iter().map(|pin| between(places, pin).len()).sum::<usize>();
         (2..=self.links.len()).find_map(|count| {
-            let all = (0..count.pow(4)).map(|code| {
-                let digit = |i: u32| (code / count.pow(i)) % count;
-                [digit(0), digit(1), digit(2), digit(3)]
+            let mut best = None;
+            crossings.each_of(count, &mut Vec::new(), &mut |places| {
+                if !crossings.allow(places) {
+                    return;
+                }
+                let traced = layer(places, self.traced);
+                let inside = traced != 0 && traced + 1 != count;
+                let merit = (through(places), inside, layer(places, Link::Ground), places.clone());
+                if best.as_ref().is_none_or(|best| merit < *best) {
+                    best = Some(merit);
+                }
             });
-            let fits = all.filter(|places| (0..count).all(|l| places.contains(&l)) && self.works(places));
-            let through =
-                |places: &Places| self.all_pins.iter().map(|pin| between(places, pin).len()).sum::<usize>();
-            let merit = |places: &Places| {
-                let coupler = layer(places, Link::Coupler);
-                let inside = coupler != 0 && coupler + 1 != count;
-                (through(places), inside, layer(places, Link::Ground), *places)
-            };
-            fits.min_by_key(merit).map(|places| Stack {
+            best.map(|(.., places)| Stack {
                 layers: (0..count)
-                    .map(|l| self.links.into_iter().filter(|link| layer(&places, *link) == l).collect())
+                    .map(|l| self.links.iter().copied().filter(|link| layer(&places, *link) == l).collect())
                     .collect(),
                 through: self
                     .all_pins
@@ -156,22 +227,15 @@ impl Layering {
         })
     }
 
-    /// Returns whether no parts cross in a stacking.
-    fn works(&self, places: &Places) -> bool {
-        let together = |[one, other]: [Link; 2]| layer(places, one) == layer(places, other);
-        let apart = !self.all_pins.iter().any(|pin| together(pin.joins));
-        let planes = self.free_pairs.iter().all(|pair| !together(pair.plates) || clear(&pair.closest));
-        let range = |joint: Joint| {
-            self.all_pins.iter().find(|pin| pin.joint == joint).map_or(0..0, |pin| between(places, pin))
-        };
-        let crossed = |pin: Joint, plate: Link| range(pin).contains(&layer(places, plate));
-        let plates = self.pins_plates.iter().all(|p| !crossed(p.pin, p.plate) || clear(&p.closest));
-        let side_by_side = |pins: [Joint; 2]| {
-            let [one, other] = pins.map(range);
-            one.start.max(other.start) < one.end.min(other.end)
-        };
-        let pins = self.pins.iter().all(|(pair, closest)| !side_by_side(*pair) || clear(closest));
-        apart && planes && plates && pins
+    /// Returns the pairs of links that pins join: along a loop in its order, otherwise in that of the links.
+    pub fn joined(&self) -> Vec<[Link; 2]> {
+        let n = self.links.len();
+        if n == 4 {
+            return (0..n).map(|i| [self.links[i], self.links[(i + 1) % n]]).collect();
+        }
+        let mut pairs: Vec<[Link; 2]> = self.all_pins.iter().map(|pin| pin.joins).collect();
+        pairs.sort_by_key(|pair| pair.map(Link::place));
+        pairs
     }
 
     /// Returns the plates of a stacking that pass over or under an end of a pin, nearer to it than `head`: a head that

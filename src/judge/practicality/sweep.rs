@@ -3,9 +3,14 @@
 
 use crate::judge::referee::UsedMotion;
 use crate::mechanism::plates::parts;
-pub use crate::mechanism::plates::{Reach, Stretch};
+pub use crate::mechanism::plates::{Position, Reach, Stretch};
 use crate::mechanism::{AssemblyMode, CrankLinkage, InputArc, InputRange, LoopJoints};
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// The most positions that are kept, half a kilobyte each.
+const MOST_KNOWN: usize = 50_000;
 
 /// A linkage with its motion as stretches.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,12 +26,9 @@ pub struct Sweep {
 impl Sweep {
     /// Returns the whole motion of a linkage by itself without passing a toggle: the full turn, or the arc of the crank (of
     /// two arcs the first, of a four-bar the one to the left of A -> B) with the linkage's own assembly mode; `None` if it
-    /// cannot be assembled, and of a linkage of several loops, whose plates are not made.
+    /// cannot be assembled, and of a six-bar or an eight-bar whose crank does not turn fully.
     pub fn of_linkage(linkage: impl Into<CrankLinkage>) -> Option<Self> {
         let linkage = linkage.into();
-        if linkage.multi_loop().is_some() {
-            return None;
-        }
         let input = linkage.mobility().input;
         let [from, to] = match input {
             InputRange::None => return None,
@@ -56,6 +58,43 @@ impl Sweep {
     /// is open.
     pub fn reach(&self, stretch: &Stretch) -> Option<(LoopJoints, Reach)> {
         parts::reach(&self.linkage, stretch)
+    }
+}
+
+/// The positions in the middle of stretches of a sweep with their bounds: each is computed once, for many distances.
+#[derive(Debug)]
+pub struct Positions<'a> {
+    /// The sweep.
+    pub sweep: &'a Sweep,
+    known: RefCell<HashMap<[u64; 2], (Position, Reach)>>,
+}
+
+impl<'a> Positions<'a> {
+    /// Returns the positions of a sweep, of which none is computed yet.
+    pub fn of(sweep: &'a Sweep) -> Self {
+        Positions { sweep, known: RefCell::default() }
+    }
+
+    /// Returns the position in the middle of a stretch with the bounds within it; `None` if the loop is open.
+    pub fn middle_of(&self, stretch: &Stretch) -> Option<(Position, Reach)> {
+        // Stretches of one sweep that have the same ends have the same assembly.
+        let key = [stretch.from.to_bits(), stretch.to.to_bits()];
+        if let Some(known) = self.known.borrow().get(&key) {
+            return Some(*known);
+        }
+        let (at, reach) = self.sweep.reach(stretch)?;
+        let found = (Position::new(&self.sweep.linkage, at), reach);
+        let mut known = self.known.borrow_mut();
+        if known.len() < MOST_KNOWN {
+            known.insert(key, found);
+        }
+        Some(found)
+    }
+
+    /// Returns the position at a crank angle; `None` if the loop is open.
+    pub fn at(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<Position> {
+        let at = self.sweep.linkage.joints_with(crank_angle, assembly)?;
+        Some(Position::new(&self.sweep.linkage, at))
     }
 }
 

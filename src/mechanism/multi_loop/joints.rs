@@ -70,6 +70,13 @@ impl MultiLoop {
         joints
     }
 
+    /// Returns the place of a joint of a name where C is at a place; `None` if the linkage has no such joint, or does not close.
+    pub fn joint_at(&self, name: &str, crank_pin: Complex) -> Option<Complex> {
+        let joint = self.joints().into_iter().find(|joint| joint.name == name)?;
+        let bodies = self.bodies((crank_pin - self.crank_pivot).arg())?;
+        Some(bodies.place(joint.body, joint.at))
+    }
+
     /// Returns the fixed pivots: A, B and the ends of further dyads on the ground.
     pub fn pivots(&self) -> Vec<Complex> {
         self.joints().iter().filter(|joint| joint.body == GROUND).map(|joint| joint.at).collect()

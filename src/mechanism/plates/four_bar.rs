@@ -28,16 +28,16 @@ const PINS: [Pin; 4] = [
 ];
 
 impl Kind for FourBar {
-    fn links(&self) -> [Link; 4] {
-        [Link::Ground, Link::Crank, Link::Coupler, Link::Follower]
+    fn links(&self) -> Vec<Link> {
+        vec![Link::Ground, Link::Crank, Link::Coupler, Link::Follower]
     }
 
-    fn pins(&self) -> &'static [Pin] {
-        &PINS
+    fn pins(&self) -> Vec<Pin> {
+        PINS.to_vec()
     }
 
-    fn points(&self) -> &'static [Joint] {
-        &Joint::ALL
+    fn points(&self) -> Vec<Joint> {
+        Joint::ALL.to_vec()
     }
 
     fn guide(&self, _: Sizes, _: &[Stretch]) -> Option<Guide> {
@@ -48,10 +48,12 @@ impl Kind for FourBar {
         let [ground, crank, coupler, follower] = FourBar::links(self);
         let x = |along: f64| point([along, 0.0]);
         Shape::with_holes(match link {
-            Link::Ground => vec![('A', x(0.0)), ('B', x(ground))],
-            Link::Crank => vec![('A', x(0.0)), ('C', x(crank))],
-            Link::Coupler => vec![('C', x(0.0)), ('D', x(coupler)), ('P', self.coupler_offset())],
-            Link::Follower | Link::Block => vec![('B', x(0.0)), ('D', x(follower))],
+            Link::Ground => vec![(Joint::A, x(0.0)), (Joint::B, x(ground))],
+            Link::Crank => vec![(Joint::A, x(0.0)), (Joint::C, x(crank))],
+            Link::Coupler => {
+                vec![(Joint::C, x(0.0)), (Joint::D, x(coupler)), (Joint::P, self.coupler_offset())]
+            }
+            _ => vec![(Joint::B, x(0.0)), (Joint::D, x(follower))],
         })
     }
 
@@ -61,7 +63,7 @@ impl Kind for FourBar {
             Link::Ground => Placement::between(a, b),
             Link::Crank => Placement::between(a, joints.crank_pin),
             Link::Coupler => Placement::between(joints.crank_pin, joints.follower_pin),
-            Link::Follower | Link::Block => Placement::between(b, joints.follower_pin),
+            _ => Placement::between(b, joints.follower_pin),
         }
     }
 
@@ -74,7 +76,8 @@ impl Kind for FourBar {
         let z = self.coupler_ratio();
         let coupler_point = length(1.0 - z) * crank_pin + length(z) * follower_pin;
         let coupler_chord = ((crank_pin + follower_pin) / self.coupler()).min(2.0);
-        Reach { crank_pin, follower_pin, coupler_point, coupler_chord, block_chord: 0.0 }
+        let moving = [(Joint::C, crank_pin), (Joint::D, follower_pin), (Joint::P, coupler_point)];
+        Reach::new(&moving, [coupler_chord, 0.0])
     }
 }
 

@@ -33,16 +33,16 @@ const PINS: [Pin; 5] = [
 ];
 
 impl Kind for InvertedSliderCrank {
-    fn links(&self) -> [Link; 4] {
-        [Link::Ground, Link::Crank, Link::Coupler, Link::Block]
+    fn links(&self) -> Vec<Link> {
+        vec![Link::Ground, Link::Crank, Link::Coupler, Link::Block]
     }
 
-    fn pins(&self) -> &'static [Pin] {
-        &PINS
+    fn pins(&self) -> Vec<Pin> {
+        PINS.to_vec()
     }
 
-    fn points(&self) -> &'static [Joint] {
-        &[Joint::A, Joint::B, Joint::C, Joint::P]
+    fn points(&self) -> Vec<Joint> {
+        vec![Joint::A, Joint::B, Joint::C, Joint::P]
     }
 
     fn in_slot(&self) -> Option<Joint> {
@@ -58,19 +58,22 @@ impl Kind for InvertedSliderCrank {
         let x = |along: f64| Complex::new(along, 0.0);
         let half = guide.map_or(0.0, |guide| guide.half);
         match link {
-            Link::Ground => Shape::with_holes(vec![('A', x(0.0)), ('B', x(self.ground()))]),
-            Link::Crank => Shape::with_holes(vec![('A', x(0.0)), ('C', x(SliderLinkage::crank(self)))]),
+            Link::Ground => Shape::with_holes(vec![(Joint::A, x(0.0)), (Joint::B, x(self.ground()))]),
+            Link::Crank => {
+                Shape::with_holes(vec![(Joint::A, x(0.0)), (Joint::C, x(SliderLinkage::crank(self)))])
+            }
             Link::Coupler => {
                 let p = SliderLinkage::coupler_offset(self);
                 let slot = guide.map(|guide| Slot { link, ends: guide.ends().map(x) });
                 let width = guide.map_or(0.0, |guide| guide.width);
                 let drilled = slot.is_none_or(|slot| slot.distance(p) >= (1.0 + BESIDE_SLOT) * width);
-                let holes = [('C', x(0.0))].into_iter().chain(drilled.then_some(('P', p))).collect();
+                let holes =
+                    [(Joint::C, x(0.0))].into_iter().chain(drilled.then_some((Joint::P, p))).collect();
                 Shape { slot, corners: vec![p], ..Shape::with_holes(holes) }
             }
-            Link::Follower | Link::Block => {
+            _ => {
                 let b = Complex::new(0.0, self.offset());
-                Shape::with_holes(vec![('B', b), ('E', x(-half)), ('F', x(half))])
+                Shape::with_holes(vec![(Joint::B, b), (Joint::E, x(-half)), (Joint::F, x(half))])
             }
         }
     }
@@ -81,7 +84,7 @@ impl Kind for InvertedSliderCrank {
             Link::Ground => Placement::between(a, self.block_pivot()),
             Link::Crank => Placement::between(a, joints.crank_pin),
             Link::Coupler => Placement::along(joints.crank_pin, at.coupler),
-            Link::Follower | Link::Block => Placement::along(joints.follower_pin, at.coupler),
+            _ => Placement::along(joints.follower_pin, at.coupler),
         }
     }
 
@@ -91,13 +94,10 @@ impl Kind for InvertedSliderCrank {
         let turn = if crank_pin < s { (crank_pin / s).asin() } else { PI };
         let swing = turn + change_of_angle(self, stretch, s);
         let chord = 2.0 * (0.5 * swing.min(PI)).sin();
-        Reach {
-            crank_pin,
-            follower_pin: self.offset().abs() * chord,
-            coupler_point: crank_pin + SliderLinkage::coupler_offset(self).norm() * chord,
-            coupler_chord: chord,
-            block_chord: chord,
-        }
+        let coupler_point = crank_pin + SliderLinkage::coupler_offset(self).norm() * chord;
+        let moving =
+            [(Joint::C, crank_pin), (Joint::D, self.offset().abs() * chord), (Joint::P, coupler_point)];
+        Reach::new(&moving, [chord, chord])
     }
 }
 

@@ -1,4 +1,4 @@
-//! The joints of a linkage of one loop by their letters, and the pins that hold plates together.
+//! The joints of a linkage by their names, and the pins that hold plates together.
 
 use super::Link;
 
@@ -19,22 +19,44 @@ pub enum Joint {
     E,
     /// The guide pin of a block that runs ahead of D in the slot.
     F,
+    /// The end of a link X-F of the second dyad of a six-bar or an eight-bar on another link.
+    X2,
+    /// The end of a link Y-F of the second dyad.
+    Y2,
+    /// The pin of the two links of the second dyad.
+    F2,
+    /// The end of a link X-F of the third dyad of an eight-bar.
+    X3,
+    /// The end of a link Y-F of the third dyad.
+    Y3,
+    /// The pin of the two links of the third dyad.
+    F3,
 }
 
 impl Joint {
+    /// The number of joints that have a name.
+    pub const COUNT: usize = 13;
+    /// The names, in the order of the joints.
+    const NAMES: [&'static str; Joint::COUNT] =
+        ["A", "B", "C", "D", "P", "E", "F", "X2", "Y2", "F2", "X3", "Y3", "F3"];
+    /// The ends X and Y of the further dyads, and the joint F of their links.
+    pub(super) const OF_DYADS: [[Joint; 3]; 2] =
+        [[Joint::X2, Joint::Y2, Joint::F2], [Joint::X3, Joint::Y3, Joint::F3]];
     /// All five joints of a four-bar.
     pub const ALL: [Joint; 5] = [Joint::A, Joint::B, Joint::C, Joint::D, Joint::P];
     /// The four pins of a four-bar.
     pub const PINS: [Joint; 4] = [Joint::A, Joint::B, Joint::C, Joint::D];
 
-    /// Returns the letter of the joint.
-    pub fn letter(self) -> char {
-        ['A', 'B', 'C', 'D', 'P', 'E', 'F'][self as usize]
+    /// Returns the joint of a name.
+    pub fn named(name: &str) -> Option<Joint> {
+        let all =
+            Joint::ALL.into_iter().chain([Joint::E, Joint::F]).chain(Joint::OF_DYADS.into_iter().flatten());
+        all.into_iter().find(|joint| joint.name() == name)
     }
 
-    /// Returns the letter of the joint as a text.
+    /// Returns the name of the joint.
     pub fn name(self) -> &'static str {
-        ["A", "B", "C", "D", "P", "E", "F"][self as usize]
+        Joint::NAMES[self as usize]
     }
 }
 

@@ -1,12 +1,9 @@
 //! The plates that a kind of linkage has: its links, their holes and slots, the pins that join them, and how far they move.
 //!
-//! Every linkage of one loop is a ring of four links, each joined to the next. A new kind is a file beside this one that
-//! implements [`Kind`], and an arm of [`Plated`].
+//! A new kind is a file beside this one that implements [`Kind`], and an arm of [`plated`].
 
 use super::{Guide, Joint, Link, Pin, Placement, Reach, Sizes, Stretch};
-use crate::mechanism::{
-    Complex, CrankLinkage, FourBar, InvertedSliderCrank, LoopJoints, SliderCrank, nearest_share,
-};
+use crate::mechanism::{Complex, CrankLinkage, LoopJoints, nearest_share};
 
 /// A slot of a plate, as the line between the centres of its round ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,8 +33,8 @@ impl Slot {
 /// The holes and the slot of a link, in its own frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Shape {
-    /// Letters and centres of the holes.
-    pub(super) holes: Vec<(char, Complex)>,
+    /// Joints and centres of the holes.
+    pub(super) holes: Vec<(Joint, Complex)>,
     /// The slot.
     pub(super) slot: Option<Slot>,
     /// Further points that the plate covers.
@@ -45,21 +42,26 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    pub(super) fn with_holes(holes: Vec<(char, Complex)>) -> Self {
+    pub(super) fn with_holes(holes: Vec<(Joint, Complex)>) -> Self {
         Shape { holes, ..Shape::default() }
     }
 }
 
 /// The plates of a kind of linkage.
 pub(super) trait Kind {
-    /// Returns the links around the loop, each joined to the next, the ground first and the coupler third.
-    fn links(&self) -> [Link; 4];
+    /// Returns the links in their places: ground, crank, coupler, and the others.
+    fn links(&self) -> Vec<Link>;
 
     /// Returns the pins.
-    fn pins(&self) -> &'static [Pin];
+    fn pins(&self) -> Vec<Pin>;
 
     /// Returns the joints whose distances matter, the coupler point among them; without guide pins.
-    fn points(&self) -> &'static [Joint];
+    fn points(&self) -> Vec<Joint>;
+
+    /// Returns the link that carries P.
+    fn traced(&self) -> Link {
+        Link::Coupler
+    }
 
     /// Returns the pin that, beside the guide pins, always lies on the centre line of the slot.
     fn in_slot(&self) -> Option<Joint> {
@@ -79,31 +81,12 @@ pub(super) trait Kind {
     fn reach(&self, stretch: &Stretch, at: &LoopJoints) -> Reach;
 }
 
-/// A linkage that has plates: one of a single loop.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Plated {
-    FourBar(FourBar),
-    SliderCrank(SliderCrank),
-    InvertedSliderCrank(InvertedSliderCrank),
-}
-
-impl Plated {
-    /// Returns a linkage as one that has plates; `None` of several loops.
-    pub(super) fn of(linkage: &CrankLinkage) -> Option<Plated> {
-        Some(match *linkage {
-            CrankLinkage::FourBar(linkage) => Plated::FourBar(linkage),
-            CrankLinkage::SliderCrank(linkage) => Plated::SliderCrank(linkage),
-            CrankLinkage::InvertedSliderCrank(linkage) => Plated::InvertedSliderCrank(linkage),
-            CrankLinkage::MultiLoop(_) => return None,
-        })
-    }
-
-    /// Returns it as the plates of its kind.
-    pub(super) fn kind(&self) -> &dyn Kind {
-        match self {
-            Plated::FourBar(linkage) => linkage,
-            Plated::SliderCrank(linkage) => linkage,
-            Plated::InvertedSliderCrank(linkage) => linkage,
-        }
+/// Returns a linkage as the plates of its kind.
+pub(super) fn plated(linkage: &CrankLinkage) -> &dyn Kind {
+    match linkage {
+        CrankLinkage::FourBar(linkage) => linkage,
+        CrankLinkage::SliderCrank(linkage) => linkage,
+        CrankLinkage::InvertedSliderCrank(linkage) => linkage,
+        CrankLinkage::MultiLoop(linkage) => linkage,
     }
 }

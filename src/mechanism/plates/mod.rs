@@ -24,15 +24,23 @@
 //! | coupler | C, P, a slot on its line | C, along the coupler |
 //! | block | B, guide pins E and F | D, along the coupler |
 //!
+//! | link of a six-bar or an eight-bar | holes | own frame: origin, x axis |
+//! |---|---|---|
+//! | ground | all fixed pivots | A, towards B |
+//! | crank | A, C, and the ends of dyads on it | A, towards C |
+//! | coupler, follower, link5 to link8: the links X-F and Y-F of each dyad in turn | X or Y, F, the ends of dyads on it, P | X or Y, towards F |
+//!
 //! A slot counts in the hull as its two ends do. Lengths are in the unit of the linkage.
 //!
 //! | module | holds |
 //! |---|---|
-//! | `four_bar`, `slider_crank`, `inverted_slider_crank` | the plates of each kind, and bounds of their motion |
+//! | `four_bar`, `slider_crank`, `inverted_slider_crank`, `multi_loop` | the plates of each kind, and bounds of their motion |
+//! | `displacement` | bounds of the motion of six-bars and eight-bars |
 //! | `guide` | the block of a slider and the slot that it runs in |
 //! | `hull`, `outline`, `separation` | geometry of one plate, and of two |
 //! | `joint`, `kind`, `motion`, `parts` | joints and pins; what a kind gives; intervals of the motion; all parts of a linkage |
 
+mod displacement;
 mod four_bar;
 mod guide;
 mod hull;
@@ -40,6 +48,7 @@ mod inverted_slider_crank;
 mod joint;
 mod kind;
 mod motion;
+mod multi_loop;
 mod outline;
 pub(crate) mod parts;
 mod separation;
@@ -55,7 +64,7 @@ pub use joint::{Joint, Pin};
 pub use kind::Slot;
 pub use motion::{Reach, Stretch};
 pub use outline::Edge;
-pub use parts::Parts;
+pub use parts::{Parts, Position};
 
 use crate::mechanism::{Complex, CrankLinkage, FourBar, LoopJoints, bounding_box};
 use std::f64::consts::PI;
@@ -64,7 +73,7 @@ use std::f64::consts::PI;
 /// is left out: far below what any machine cuts.
 pub const COINCIDENT: f64 = 1e-9;
 
-/// A link of a linkage of one loop.
+/// A link of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Link {
     /// The fixed link from A to B.
@@ -77,11 +86,31 @@ pub enum Link {
     Follower,
     /// The block of a slider.
     Block,
+    /// The link X-F of the second dyad of a six-bar or an eight-bar.
+    Fifth,
+    /// The link Y-F of the second dyad.
+    Sixth,
+    /// The link X-F of the third dyad of an eight-bar.
+    Seventh,
+    /// The link Y-F of the third dyad.
+    Eighth,
 }
 
 impl Link {
     /// All four of a four-bar, in the order of drawings and lists.
     pub const ALL: [Link; 4] = [Link::Ground, Link::Crank, Link::Coupler, Link::Follower];
+
+    /// Those of a six-bar or an eight-bar by the number of their body ([`multi_loop`](crate::mechanism::multi_loop)).
+    pub const OF_BODIES: [Link; 8] = [
+        Link::Ground,
+        Link::Crank,
+        Link::Coupler,
+        Link::Follower,
+        Link::Fifth,
+        Link::Sixth,
+        Link::Seventh,
+        Link::Eighth,
+    ];
 
     /// Returns the name of the link in lower case.
     pub fn name(self) -> &'static str {
@@ -91,16 +120,29 @@ impl Link {
             Link::Coupler => "coupler",
             Link::Follower => "follower",
             Link::Block => "block",
+            Link::Fifth => "link5",
+            Link::Sixth => "link6",
+            Link::Seventh => "link7",
+            Link::Eighth => "link8",
         }
     }
 
-    /// Returns the place of the link around the loop, from the ground on: a block has that of a follower.
+    /// Returns the name in a sentence: with an article, unless it has a number.
+    pub fn in_words(self) -> String {
+        if self.place() < 4 { format!("the {}", self.name()) } else { self.name().to_owned() }
+    }
+
+    /// Returns the place of the link among all of its linkage, the ground first: a block has that of a follower.
     pub fn place(self) -> usize {
         match self {
             Link::Ground => 0,
             Link::Crank => 1,
             Link::Coupler => 2,
             Link::Follower | Link::Block => 3,
+            Link::Fifth => 4,
+            Link::Sixth => 5,
+            Link::Seventh => 6,
+            Link::Eighth => 7,
         }
     }
 }
@@ -108,8 +150,8 @@ impl Link {
 /// The centre of a hole in the plate's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hole {
-    /// Letter of the joint: A, B, C, D or P; E or F of a guide pin.
-    pub name: char,
+    /// The joint: E or F of a guide pin.
+    pub joint: Joint,
     /// Position of the centre.
     pub at: Complex,
 }
@@ -196,7 +238,7 @@ impl Plate {
 
     /// Builds the plate of a link with its holes and its slot.
     fn shaped(link: Link, shape: kind::Shape, radius: f64) -> Self {
-        let holes: Vec<Hole> = shape.holes.into_iter().map(|(name, at)| Hole { name, at }).collect();
+        let holes: Vec<Hole> = shape.holes.into_iter().map(|(joint, at)| Hole { joint, at }).collect();
         let ends = shape.slot.iter().flat_map(|slot| slot.ends);
         let points = holes.iter().map(|hole| hole.at).chain(ends).chain(shape.corners).collect();
         Plate::around(link, (holes, shape.slot), points, radius)
@@ -258,27 +300,23 @@ impl Plate {
         [low - reach, high + reach]
     }
 
-    /// Returns the distinct holes: the letters of coincident holes together, with the position of the first.
+    /// Returns the distinct holes: the names of coincident holes together, with the position of the first.
     pub fn distinct_holes(&self) -> Vec<(String, Complex)> {
         let centres: Vec<Complex> = self.holes.iter().map(|hole| hole.at).collect();
         let near = COINCIDENT * (hull::extent(&centres) + self.radius);
         let mut distinct: Vec<(String, Complex)> = Vec::new();
         for hole in &self.holes {
             match distinct.iter_mut().find(|(_, at)| (*at - hole.at).norm() <= near) {
-                Some((names, _)) => names.push(hole.name),
-                None => distinct.push((hole.name.to_string(), hole.at)),
+                Some((names, _)) => names.push_str(hole.joint.name()),
+                None => distinct.push((hole.joint.name().to_owned(), hole.at)),
             }
         }
         distinct
     }
 
-    /// Returns the placement of the plate at a position of the linkage; `None` of one of several loops, which has no such plate.
-    pub fn placement(
-        &self,
-        linkage: impl Into<CrankLinkage>,
-        joints: impl Into<LoopJoints>,
-    ) -> Option<Placement> {
-        Some(kind::Plated::of(&linkage.into())?.kind().placement(self.link, &joints.into()))
+    /// Returns the placement of the plate at a position of the linkage.
+    pub fn placement(&self, linkage: impl Into<CrankLinkage>, joints: impl Into<LoopJoints>) -> Placement {
+        kind::plated(&linkage.into()).placement(self.link, &joints.into())
     }
 
     /// Computes the signed distance between two placed plates, below zero if they overlap (then its size is the least

@@ -1,5 +1,6 @@
 //! The motion over which plates are made and examined: intervals of crank angles, and how far joints move within one.
 
+use super::Joint;
 use crate::mechanism::AssemblyMode;
 
 /// An interval of crank angles that is passed with one assembly mode.
@@ -33,12 +34,8 @@ impl Stretch {
 /// Bounds of the joints' distances from their positions in the middle of a stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
-    /// Bound for C.
-    pub crank_pin: f64,
-    /// Bound for D.
-    pub follower_pin: f64,
-    /// Bound for P.
-    pub coupler_point: f64,
+    /// The bound of each joint, 0 of fixed pivots, and of guide pins, which depend on the block.
+    joints: [f64; Joint::COUNT],
     /// Bound of the distance that a point of the coupler at 1 from C moves about C; 2 or less.
     pub coupler_chord: f64,
     /// Bound of the distance that a point of the block at 1 from D moves about D; 0 without a block that turns.
@@ -46,8 +43,15 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// Returns the largest of those of C, D and P.
-    pub fn coupler(&self) -> f64 {
-        self.crank_pin.max(self.follower_pin).max(self.coupler_point)
+    /// Returns the bounds of joints that move, with those of the directions of a coupler and of a block.
+    pub(super) fn new(moving: &[(Joint, f64)], [coupler_chord, block_chord]: [f64; 2]) -> Self {
+        let mut joints = [0.0; Joint::COUNT];
+        moving.iter().for_each(|(joint, bound)| joints[*joint as usize] = *bound);
+        Reach { joints, coupler_chord, block_chord }
+    }
+
+    /// Returns the bound of a joint.
+    pub fn of(&self, joint: Joint) -> f64 {
+        self.joints[joint as usize]
     }
 }

@@ -1,37 +1,51 @@
 //! All parts of a linkage: its plates with their holes and slots, its pins, and where they lie in a position.
 
-use super::kind::Plated;
-use super::{Guide, Joint, Link, Pin, Placement, Plate, Reach, Sizes, Slot, Stretch};
+use super::kind::plated;
+use super::{Guide, Joint, Link, Pin, Placement, Plate, Reach, Sizes, Slot, Stretch, multi_loop};
+use crate::mechanism::multi_loop::Bodies;
 use crate::mechanism::{Complex, CrankLinkage, LoopJoints};
 use std::f64::consts::TAU;
 
 /// Steps of the search for the largest hole: each halves the interval.
 const HALVINGS: usize = 60;
 
+/// A position of a linkage, in which frames and joints are cheap to read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Position {
+    at: LoopJoints,
+    /// The bodies of a six-bar or an eight-bar.
+    bodies: Option<Bodies>,
+}
+
+impl Position {
+    /// Returns a position of a linkage with its bodies.
+    pub fn new(linkage: &CrankLinkage, at: LoopJoints) -> Self {
+        Position { at, bodies: linkage.multi_loop().and_then(|linkage| multi_loop::bodies(linkage, &at)) }
+    }
+}
+
 /// The parts that a linkage is built from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parts {
     linkage: CrankLinkage,
-    plated: Plated,
     guide: Option<Guide>,
 }
 
 impl Parts {
     /// Returns the parts of a linkage for a motion; the slot of a crank that turns fully is long enough for the whole turn.
-    /// `None` if a slider's loop is open in the motion, and of a linkage of several loops.
+    /// `None` if a slider's loop is open in the motion.
     pub fn new(linkage: impl Into<CrankLinkage>, sizes: Sizes, motion: &[Stretch]) -> Option<Self> {
         let linkage = linkage.into();
-        let plated = Plated::of(&linkage)?;
-        let kind = plated.kind();
+        let kind = plated(&linkage);
         if !kind.links().contains(&Link::Block) {
-            return Some(Parts { linkage, plated, guide: None });
+            return Some(Parts { linkage, guide: None });
         }
         let motion: Vec<Stretch> = match linkage.mobility().input_turns_fully() {
             true => motion.iter().map(|stretch| Stretch { from: 0.0, to: TAU, ..*stretch }).collect(),
             false => motion.to_vec(),
         };
         let guide = Some(kind.guide(sizes, &motion)?);
-        Some(Parts { linkage, plated, guide })
+        Some(Parts { linkage, guide })
     }
 
     /// Returns the linkage.
@@ -39,19 +53,24 @@ impl Parts {
         &self.linkage
     }
 
-    /// Returns the links around the loop, in the order of drawings and lists: ground, crank, coupler, and the fourth.
-    pub fn links(&self) -> [Link; 4] {
-        self.plated.kind().links()
+    /// Returns the links in the order of drawings and lists: ground, crank, coupler, and the others.
+    pub fn links(&self) -> Vec<Link> {
+        plated(&self.linkage).links()
     }
 
     /// Returns the pins.
-    pub fn pins(&self) -> &'static [Pin] {
-        self.plated.kind().pins()
+    pub fn pins(&self) -> Vec<Pin> {
+        plated(&self.linkage).pins()
+    }
+
+    /// Returns the link that carries P.
+    pub fn traced(&self) -> Link {
+        plated(&self.linkage).traced()
     }
 
     /// Returns whether a pin always lies in the slot of a link, so that it may stand through it.
     pub fn stands_in_slot(&self, pin: Joint, link: Link) -> bool {
-        self.slot().is_some_and(|slot| slot.link == link) && self.plated.kind().in_slot() == Some(pin)
+        self.slot().is_some_and(|slot| slot.link == link) && plated(&self.linkage).in_slot() == Some(pin)
     }
 
     /// Returns the guide of the slider; `None` of a four-bar.
@@ -61,30 +80,43 @@ impl Parts {
 
     /// Returns the slot that the block runs in; `None` of a four-bar.
     pub fn slot(&self) -> Option<Slot> {
-        let kind = self.plated.kind();
+        let kind = plated(&self.linkage);
         self.links().into_iter().find_map(|link| kind.shape(link, self.guide.as_ref()).slot)
     }
 
     /// Builds the plate of a link.
     pub fn plate(&self, link: Link, radius: f64) -> Plate {
-        Plate::shaped(link, self.plated.kind().shape(link, self.guide.as_ref()), radius)
+        Plate::shaped(link, plated(&self.linkage).shape(link, self.guide.as_ref()), radius)
     }
 
     /// Builds the plates of all links, in their order.
-    pub fn plates(&self, radius: impl Fn(Link) -> f64) -> [Plate; 4] {
-        self.links().map(|link| self.plate(link, radius(link)))
+    pub fn plates(&self, radius: impl Fn(Link) -> f64) -> Vec<Plate> {
+        self.links().into_iter().map(|link| self.plate(link, radius(link))).collect()
     }
 
     /// Returns the frame of a link at a position.
     pub fn placement(&self, link: Link, at: &LoopJoints) -> Placement {
-        self.plated.kind().placement(link, at)
+        self.frame(link, &Position::new(&self.linkage, *at))
+    }
+
+    /// Returns the frame of a link at a position that is looked at more than once.
+    pub fn frame(&self, link: Link, position: &Position) -> Placement {
+        match (&self.linkage, &position.bodies) {
+            (CrankLinkage::MultiLoop(linkage), Some(bodies)) => multi_loop::frame_of(linkage, link, bodies),
+            _ => plated(&self.linkage).placement(link, &position.at),
+        }
     }
 
     /// Returns the place of a joint at a position.
     pub fn joint(&self, joint: Joint, at: &LoopJoints) -> Complex {
+        self.joint_in(joint, &Position::new(&self.linkage, *at))
+    }
+
+    /// Returns the place of a joint at a position that is looked at more than once.
+    pub fn joint_in(&self, joint: Joint, position: &Position) -> Complex {
         let half = self.guide.as_ref().map_or(0.0, |guide| guide.half);
-        let guided = |along: f64| self.placement(Link::Block, at).of(Complex::new(along, 0.0));
-        joint_at(&self.linkage, joint, at)
+        let guided = |along: f64| self.frame(Link::Block, position).of(Complex::new(along, 0.0));
+        joint_at(&self.linkage, joint, position)
             .unwrap_or_else(|| guided(if joint == Joint::E { -half } else { half }))
     }
 
@@ -103,30 +135,39 @@ impl Parts {
 
     /// Returns P if it lies in the slot of the coupler, or so near it that there is no room for a hole.
     pub fn undrilled(&self) -> Option<Joint> {
-        let coupler = self.plate(Link::Coupler, 0.0);
-        (!coupler.holes.iter().any(|hole| hole.name == 'P')).then_some(Joint::P)
+        let plate = self.plate(self.traced(), 0.0);
+        (!plate.holes.iter().any(|hole| hole.joint == Joint::P)).then_some(Joint::P)
     }
 }
 
-/// Returns the joints whose distances over the motion matter, the coupler point among them; none of a linkage of several loops.
-pub(crate) fn points(linkage: &CrankLinkage) -> &'static [Joint] {
-    Plated::of(linkage).map_or(&[], |plated| plated.kind().points())
+/// Returns the joints whose distances over the motion matter, the coupler point among them.
+pub(crate) fn points(linkage: &CrankLinkage) -> Vec<Joint> {
+    plated(linkage).points()
 }
 
-/// Returns the pins of a linkage; none of one of several loops.
-pub(crate) fn pins(linkage: &CrankLinkage) -> &'static [Pin] {
-    Plated::of(linkage).map_or(&[], |plated| plated.kind().pins())
+/// Returns whether a joint, or P, is on a link; a guide pin is on none.
+pub(crate) fn carries(linkage: &CrankLinkage, link: Link, joint: Joint) -> bool {
+    let kind = plated(linkage);
+    match joint {
+        Joint::P => kind.traced() == link,
+        _ => kind.pins().iter().any(|pin| pin.joint == joint && pin.joins.contains(&link)),
+    }
 }
 
-/// Computes how far joints move within a stretch, from the position in its middle; `None` if the loop is open there, and of a
-/// linkage of several loops.
+/// Returns the links of a linkage in their places.
+pub(crate) fn links(linkage: &CrankLinkage) -> Vec<Link> {
+    plated(linkage).links()
+}
+
+/// Computes how far joints move within a stretch, from the position in its middle; `None` if the loop is open there.
 pub(crate) fn reach(linkage: &CrankLinkage, stretch: &Stretch) -> Option<(LoopJoints, Reach)> {
     let at = linkage.joints_with(stretch.middle(), stretch.assembly)?;
-    Some((at, Plated::of(linkage)?.kind().reach(stretch, &at)))
+    Some((at, plated(linkage).reach(stretch, &at)))
 }
 
 /// Returns the place of a joint at a position; `None` of a guide pin, which depends on the block.
-pub(crate) fn joint_at(linkage: &CrankLinkage, joint: Joint, at: &LoopJoints) -> Option<Complex> {
+pub(crate) fn joint_at(linkage: &CrankLinkage, joint: Joint, position: &Position) -> Option<Complex> {
+    let at = &position.at;
     match joint {
         Joint::A => Some(linkage.crank_pivot()),
         Joint::B => Some(linkage.second_pivot().unwrap_or(at.joints.follower_pin)),
@@ -134,6 +175,7 @@ pub(crate) fn joint_at(linkage: &CrankLinkage, joint: Joint, at: &LoopJoints) ->
         Joint::D => Some(at.joints.follower_pin),
         Joint::P => Some(at.joints.coupler_point),
         Joint::E | Joint::F => None,
+        of_dyad => multi_loop::joint_of(linkage.multi_loop()?, of_dyad, position.bodies.as_ref()?),
     }
 }
 
@@ -146,7 +188,7 @@ fn nearest(parts: &Parts) -> f64 {
         let holes: Vec<Complex> = plate.distinct_holes().into_iter().map(|(_, at)| at).collect();
         let pairs = (0..holes.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
         let apart = pairs.map(|(i, j)| (holes[i] - holes[j]).norm()).fold(f64::INFINITY, f64::min);
-        let fixed = plate.holes.iter().filter(|hole| hole.name != 'P');
+        let fixed = plate.holes.iter().filter(|hole| hole.joint != Joint::P);
         let beside = fixed.map(|hole| plate.slot.map_or(f64::INFINITY, |slot| slot.distance(hole.at)));
         beside.fold(apart, f64::min)
     };

@@ -23,16 +23,16 @@ const PINS: [Pin; 5] = [
 ];
 
 impl Kind for SliderCrank {
-    fn links(&self) -> [Link; 4] {
-        [Link::Ground, Link::Crank, Link::Coupler, Link::Block]
+    fn links(&self) -> Vec<Link> {
+        vec![Link::Ground, Link::Crank, Link::Coupler, Link::Block]
     }
 
-    fn pins(&self) -> &'static [Pin] {
-        &PINS
+    fn pins(&self) -> Vec<Pin> {
+        PINS.to_vec()
     }
 
-    fn points(&self) -> &'static [Joint] {
-        &[Joint::A, Joint::C, Joint::D, Joint::P]
+    fn points(&self) -> Vec<Joint> {
+        vec![Joint::A, Joint::C, Joint::D, Joint::P]
     }
 
     fn in_slot(&self) -> Option<Joint> {
@@ -52,16 +52,16 @@ impl Kind for SliderCrank {
                 let line =
                     (self.line_point() - SliderLinkage::crank_pivot(self)) * self.line_direction().conj();
                 let slot = guide.map(|guide| Slot { link, ends: guide.ends().map(|place| line + place) });
-                Shape { slot, ..Shape::with_holes(vec![('A', x(0.0))]) }
+                Shape { slot, ..Shape::with_holes(vec![(Joint::A, x(0.0))]) }
             }
-            Link::Crank => Shape::with_holes(vec![('A', x(0.0)), ('C', x(SliderLinkage::crank(self)))]),
+            Link::Crank => {
+                Shape::with_holes(vec![(Joint::A, x(0.0)), (Joint::C, x(SliderLinkage::crank(self)))])
+            }
             Link::Coupler => {
                 let p = SliderLinkage::coupler_offset(self);
-                Shape::with_holes(vec![('C', x(0.0)), ('D', x(self.coupler())), ('P', p)])
+                Shape::with_holes(vec![(Joint::C, x(0.0)), (Joint::D, x(self.coupler())), (Joint::P, p)])
             }
-            Link::Follower | Link::Block => {
-                Shape::with_holes(vec![('D', x(0.0)), ('E', x(-half)), ('F', x(half))])
-            }
+            _ => Shape::with_holes(vec![(Joint::D, x(0.0)), (Joint::E, x(-half)), (Joint::F, x(half))]),
         }
     }
 
@@ -71,7 +71,7 @@ impl Kind for SliderCrank {
             Link::Ground => Placement { origin: a, direction: line },
             Link::Crank => Placement::between(a, joints.crank_pin),
             Link::Coupler => Placement::along(joints.crank_pin, at.coupler),
-            Link::Follower | Link::Block => Placement { origin: joints.follower_pin, direction: line },
+            _ => Placement { origin: joints.follower_pin, direction: line },
         }
     }
 
@@ -83,7 +83,8 @@ impl Kind for SliderCrank {
         let z = SliderLinkage::coupler_offset(self) / self.coupler();
         let coupler_point = length(1.0 - z) * crank_pin + length(z) * follower_pin;
         let coupler_chord = ((crank_pin + follower_pin) / self.coupler()).min(2.0);
-        Reach { crank_pin, follower_pin, coupler_point, coupler_chord, block_chord: 0.0 }
+        let moving = [(Joint::C, crank_pin), (Joint::D, follower_pin), (Joint::P, coupler_point)];
+        Reach::new(&moving, [coupler_chord, 0.0])
     }
 }
 

@@ -116,9 +116,7 @@ fn holes_lie_where_the_joints_are_and_pins_have_one_in_both_plates_or_run_in_the
             for plate in &plates {
                 let placed = parts.placement(plate.link, &at);
                 for hole in &plate.holes {
-                    let all = [Joint::A, Joint::B, Joint::C, Joint::D, Joint::P, Joint::E, Joint::F];
-                    let joint = all.into_iter().find(|joint| joint.letter() == hole.name).expect("a joint");
-                    let apart = (placed.of(hole.at) - parts.joint(joint, &at)).norm();
+                    let apart = (placed.of(hole.at) - parts.joint(hole.joint, &at)).norm();
                     assert!(apart < 1e-12 * linkage.longest().max(100.0), "{hole:?} of {plate:?}: {apart}");
                 }
             }
@@ -126,7 +124,7 @@ fn holes_lie_where_the_joints_are_and_pins_have_one_in_both_plates_or_run_in_the
         for pin in parts.pins() {
             let [one, other] = pin.joins.map(|link| {
                 let plate = &plates[links.iter().position(|other| *other == link).expect("a link")];
-                plate.holes.iter().any(|hole| hole.name == pin.joint.letter()) || plate.slot.is_some()
+                plate.holes.iter().any(|hole| hole.joint == pin.joint) || plate.slot.is_some()
             });
             assert!(one && other, "{pin:?} of {linkage:?}");
         }
@@ -180,12 +178,12 @@ fn joints_and_corners_of_plates_move_no_farther_than_their_bounds() {
             for at in positions(&linkage, &[stretch]) {
                 let slack = 1e-10 * linkage.longest();
                 let moved = |joint: Joint| (parts.joint(joint, &at) - parts.joint(joint, &middle)).norm();
-                assert!(moved(Joint::C) <= reach.crank_pin + slack);
-                assert!(moved(Joint::D) <= reach.follower_pin + slack, "{linkage:?} {stretch:?}");
-                assert!(moved(Joint::P) <= reach.coupler_point + slack, "{linkage:?} {stretch:?}");
+                assert!(moved(Joint::C) <= reach.of(Joint::C) + slack);
+                assert!(moved(Joint::D) <= reach.of(Joint::D) + slack, "{linkage:?} {stretch:?}");
+                assert!(moved(Joint::P) <= reach.of(Joint::P) + slack, "{linkage:?} {stretch:?}");
                 for (link, origin, chord) in [
-                    (Link::Coupler, reach.crank_pin, reach.coupler_chord),
-                    (Link::Block, reach.follower_pin, reach.block_chord),
+                    (Link::Coupler, reach.of(Joint::C), reach.coupler_chord),
+                    (Link::Block, reach.of(Joint::D), reach.block_chord),
                 ] {
                     let plate = parts.plate(link, 0.0);
                     let [before, after] = [&middle, &at].map(|at| parts.placement(link, at));

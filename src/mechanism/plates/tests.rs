@@ -5,7 +5,11 @@ use crate::mechanism::{AssemblyMode, CouplerSide, NaturalCoordinates, cross, dot
 use std::f64::consts::TAU;
 
 fn plate(points: &[[f64; 2]], radius: f64) -> Plate {
-    let holes = points.iter().zip("CDPQ".chars()).map(|(xy, name)| Hole { name, at: point(*xy) }).collect();
+    let holes = points
+        .iter()
+        .zip([Joint::C, Joint::D, Joint::P, Joint::X2])
+        .map(|(xy, joint)| Hole { joint, at: point(*xy) })
+        .collect();
     Plate::new(Link::Coupler, holes, radius)
 }
 
@@ -174,17 +178,17 @@ fn plates_stand_where_the_joints_are() {
     })
     .unwrap();
     let joints = linkage.position(0.3).joints().unwrap();
-    let place = |name: char| match name {
-        'A' => linkage.crank_pivot(),
-        'B' => linkage.follower_pivot(),
-        'C' => joints.crank_pin,
-        'D' => joints.follower_pin,
+    let place = |joint: Joint| match joint {
+        Joint::A => linkage.crank_pivot(),
+        Joint::B => linkage.follower_pivot(),
+        Joint::C => joints.crank_pin,
+        Joint::D => joints.follower_pin,
         _ => joints.coupler_point,
     };
     for plate in Plate::all(&linkage, 0.4) {
-        let at = plate.placement(linkage, joints).expect("a four-bar");
+        let at = plate.placement(linkage, joints);
         for hole in &plate.holes {
-            assert!((at.of(hole.at) - place(hole.name)).norm() < 1e-13, "{} {hole:?}", plate.link.name());
+            assert!((at.of(hole.at) - place(hole.joint)).norm() < 1e-13, "{} {hole:?}", plate.link.name());
         }
     }
 }

@@ -56,10 +56,12 @@ fn pins(model: &Model<'_>, plates: &[(Plate, Placement)]) -> (usize, bool) {
         plate.flat_map(|(plate, _)| plate.distinct_holes())
     };
     let is_joined = |(name, _): (String, _)| name.contains('P') && name.len() > 1;
-    // Coincident pivots A and B share one pin.
-    let shared = holes(Link::Ground).any(|(name, _)| name.len() > 1);
+    // Coincident fixed pivots share one pin.
+    let ground = plates.iter().find(|(plate, _)| plate.link == Link::Ground);
+    let shared = ground.map_or(0, |(plate, _)| plate.holes.len() - plate.distinct_holes().len());
     let all = model.parts.as_ref().map_or(0, |parts| parts.pins().len());
-    (all - usize::from(shared), !holes(Link::Coupler).any(is_joined))
+    let traced = model.parts.as_ref().map_or(Link::Coupler, |parts| parts.traced());
+    (all - shared, !holes(traced).any(is_joined))
 }
 
 /// Returns the list as text.

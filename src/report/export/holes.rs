@@ -57,7 +57,7 @@ impl Holes {
         let largest = match link {
             Link::Ground => self.boss.max(self.pins),
             Link::Crank => self.motor.max(self.pins),
-            Link::Coupler | Link::Follower | Link::Block => self.pins,
+            _ => self.pins,
         };
         0.5 * largest + margin
     }
@@ -77,13 +77,13 @@ impl Holes {
             return Ok(());
         };
         let [one, other] = [&from, &to].map(|joints| self.of(link, joints));
-        let (distance, plate) = (brief(apart, 3), link.name());
+        let (distance, plate) = (brief(apart, 3), link.in_words());
         if one == other {
             return Err(Refusal::about(
                 settings,
                 "hole_mm",
                 format!(
-                    "holes of {} mm run into each other: {from} and {to} of the {plate} are {distance} mm apart",
+                    "holes of {} mm run into each other: {from} and {to} of {plate} are {distance} mm apart",
                     exact(one)
                 ),
                 format!("choose hole_mm below {distance}, or a larger scale"),
@@ -101,7 +101,7 @@ impl Holes {
             settings,
             key,
             format!(
-                "a hole of {} mm at {from} and one of {} mm at {to} of the {plate} run into each other: they are \
+                "a hole of {} mm at {from} and one of {} mm at {to} of {plate} run into each other: they are \
                  {distance} mm apart",
                 exact(one),
                 exact(other)

@@ -180,12 +180,24 @@ impl Sheet {
     fn linkage(&self, picture: &mut Pixmap, model: &Model<'_>, at: &LoopJoints) {
         let skeleton = Skeleton::of(model, at);
         if let Some(line) = skeleton.line {
-            self.line(picture, &line, false, LINKS, if skeleton.ground.is_some() { 0.012 } else { 0.004 });
+            self.line(picture, &line, false, LINKS, if skeleton.ground.is_empty() { 0.004 } else { 0.012 });
         }
         if let Some(path) = self.path(&skeleton.coupler, true).filter(|_| skeleton.coupler.len() > 2) {
             picture.fill_path(&path, &paint(COUPLER, 170), FillRule::Winding, Transform::identity(), None);
         }
         self.line(picture, &skeleton.coupler, true, LINKS, 0.006);
+        for (_, corners) in &skeleton.links {
+            if let Some(path) = self.path(corners, true).filter(|_| corners.len() > 2) {
+                picture.fill_path(
+                    &path,
+                    &paint(COUPLER, 170),
+                    FillRule::Winding,
+                    Transform::identity(),
+                    None,
+                );
+            }
+            self.line(picture, corners, true, LINKS, if corners.len() > 2 { 0.006 } else { 0.012 });
+        }
         self.line(picture, &skeleton.crank, false, LINKS, 0.012);
         if let Some(follower) = skeleton.follower {
             self.line(picture, &follower, false, LINKS, 0.012);
@@ -195,7 +207,8 @@ impl Sheet {
             self.line(picture, &skeleton.block, true, LINKS, 0.006);
         }
         for (name, joint) in &skeleton.joints {
-            let radius = if matches!(*name, "A" | "B") { 0.017 } else { 0.012 };
+            let is_pivot = matches!(*name, "A" | "B") || skeleton.ground.contains(joint);
+            let radius = if is_pivot { 0.017 } else { 0.012 };
             if *name != "P" {
                 self.disc(picture, *joint, LINKS, radius);
                 self.disc(picture, *joint, PAPER, radius - 0.005);

@@ -60,9 +60,6 @@ fn arms(at: Complex, angle: f64, length: f64) -> Arms {
 
 impl<'a> Model<'a> {
     pub(super) fn new(subject: &'a Subject, settings: &'a Settings) -> Result<Self, Refusal> {
-        if subject.linkage.multi_loop().is_some() {
-            return Err(Refusal::without_plates());
-        }
         let mut assumed = Vec::new();
         let unit = unit_of(subject, settings)?;
         if unit.is_none() {
@@ -245,7 +242,7 @@ impl<'a> Model<'a> {
         })
     }
 
-    /// Returns the four plates in their final sizes, each with its place in the layout (with room for the kerf): one
+    /// Returns the plates in their final sizes, each with its place in the layout (with room for the kerf): one
     /// below another, on a sheet in as many columns as that takes. The tool's paths begin at the sheet's corner.
     pub(super) fn plates(&self) -> Result<Vec<(Plate, Placement)>, Refusal> {
         let parts = self.parts()?;

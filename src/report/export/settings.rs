@@ -17,14 +17,6 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    /// Returns the refusal of a drawing of plates of a linkage of several loops.
-    pub(super) fn without_plates() -> Self {
-        Refusal::new(
-            "the links of six-bars and eight-bars are not laid out as plates",
-            "export it as toml, json or csv; `linkwright report` draws it",
-        )
-    }
-
     /// Returns a refusal that is not about a single setting.
     pub(super) fn new(message: impl Into<String>, help: impl Into<String>) -> Self {
         Refusal { setting: None, message: message.into(), help: help.into() }

@@ -1,8 +1,8 @@
 //! The skeleton of a linkage in a position: its links as lines, its joints, and of a slider the rail or the rod and the block.
 
 use super::model::Model;
-use crate::mechanism::plates::{Edge, Link};
-use crate::mechanism::{Complex, CrankLinkage, LoopJoints};
+use crate::mechanism::plates::{Edge, Link, convex_hull};
+use crate::mechanism::{Complex, CrankLinkage, LoopJoints, MultiLoop};
 
 /// Half the height of a drawn block, in diameters of a hole.
 const HALF_BLOCK: f64 = 1.0;
@@ -12,14 +12,16 @@ const HALF_BLOCK: f64 = 1.0;
 pub(super) struct Skeleton {
     /// The joints with their letters; D only where it is a pin.
     pub(super) joints: Vec<(&'static str, Complex)>,
-    /// A and B; `None` without a second pivot.
-    pub(super) ground: Option<[Complex; 2]>,
+    /// The fixed pivots; none without a second one.
+    pub(super) ground: Vec<Complex>,
     /// A and C.
     pub(super) crank: [Complex; 2],
     /// B and D of a four-bar; the arm from B to the line of an inverted slider-crank.
     pub(super) follower: Option<[Complex; 2]>,
-    /// C, D and P; C and P of a rod.
+    /// C, D and P; C and P of a rod; none of a six-bar or an eight-bar.
     pub(super) coupler: Vec<Complex>,
+    /// The names of the links of a six-bar or an eight-bar, a crank of two joints left out, with their corners.
+    pub(super) links: Vec<(&'static str, Vec<Complex>)>,
     /// The rail, or the rod that runs through the block.
     pub(super) line: Option<[Complex; 2]>,
     /// The outline of the slot that the block's pins run in; none without a slider.
@@ -38,16 +40,18 @@ impl Skeleton {
                 .into_iter()
                 .filter_map(|(name, at)| Some((name, at?)))
                 .collect(),
-            ground: second.map(|b| [a, b]),
+            ground: second.map_or(Vec::new(), |b| vec![a, b]),
             crank: [a, c],
             follower: second.map(|b| [b, d]),
             coupler: vec![c, d, p],
+            links: Vec::new(),
             line: None,
             slot: outline(model, at),
             block: block(model, at),
         };
         match model.linkage {
-            CrankLinkage::FourBar(_) | CrankLinkage::MultiLoop(_) => plain,
+            CrankLinkage::FourBar(_) => plain,
+            CrankLinkage::MultiLoop(linkage) => several_loops(&linkage, plain),
             CrankLinkage::SliderCrank(_) => Skeleton { line: line(model, at, None), ..plain },
             CrankLinkage::InvertedSliderCrank(_) => Skeleton {
                 joints: plain.joints.into_iter().filter(|(name, _)| *name != "D").collect(),
@@ -64,11 +68,17 @@ impl Skeleton {
         let c = &self.coupler;
         let sides: Vec<[Complex; 2]> =
             (0..c.len()).flat_map(|j| (0..j).map(move |i| (i, j))).map(|(i, j)| [c[i], c[j]]).collect();
-        let mut bars: Vec<[Complex; 2]> = self.ground.into_iter().collect();
+        let mut bars: Vec<[Complex; 2]> = self.ground.windows(2).map(|pair| [pair[0], pair[1]]).collect();
         bars.push(self.crank);
         bars.extend(sides.first());
         bars.extend(self.follower);
         bars.extend(sides.get(1..).unwrap_or_default());
+        for (_, corners) in &self.links {
+            bars.extend(corners.windows(2).map(|pair| [pair[0], pair[1]]));
+            if let [first, _, .., last] = corners[..] {
+                bars.push([last, first]);
+            }
+        }
         bars
     }
 
@@ -109,4 +119,30 @@ fn block(model: &Model<'_>, at: &LoopJoints) -> Vec<Complex> {
     let placed = parts.placement(Link::Block, at);
     let corners = [[-wide, -high], [wide, -high], [wide, high], [-wide, high]];
     corners.into_iter().map(|[x, y]| placed.of(Complex::new(x, y))).collect()
+}
+
+/// Returns the skeleton of a six-bar or an eight-bar.
+fn several_loops(linkage: &MultiLoop, plain: Skeleton) -> Skeleton {
+    let crank_pin = plain.crank[1];
+    let at = |name: &str| linkage.joint_at(name, crank_pin);
+    let near = 1e-9 * linkage.longest();
+    let mut links = Vec::new();
+    for body in linkage.links() {
+        let link = Link::OF_BODIES[body.body];
+        let corners: Vec<Complex> = body.joints.iter().filter_map(|(name, _)| at(name)).collect();
+        if link != Link::Ground && (link != Link::Crank || corners.len() > 2) {
+            let name = if link == Link::Crank { "crank-plate" } else { link.name() };
+            links.push((name, convex_hull(&corners, near)));
+        }
+    }
+    let joints = linkage.joints();
+    let named = |joint: &crate::mechanism::multi_loop::NamedJoint| Some((joint.name, at(joint.name)?));
+    Skeleton {
+        joints: joints.iter().filter_map(named).collect(),
+        ground: linkage.pivots(),
+        follower: None,
+        coupler: Vec::new(),
+        links,
+        ..plain
+    }
 }

@@ -129,19 +129,24 @@ pub(super) fn drawing(model: &Model<'_>, at: &LoopJoints) -> String {
 
     page.push(&group("skeleton", &line(LINKS, &thick)));
     let dashes = mm(0.012 * extent);
-    if let Some(ground) = skeleton.ground {
-        page.path(&ground, false, &format!(r#"id="ground" stroke-dasharray="{dashes} {dashes}""#));
+    if !skeleton.ground.is_empty() {
+        page.path(&skeleton.ground, false, &format!(r#"id="ground" stroke-dasharray="{dashes} {dashes}""#));
     }
     page.path(&skeleton.crank, false, r#"id="crank""#);
     let is_arm = skeleton.line.is_some();
     if let Some(follower) = skeleton.follower {
         page.path(&follower, false, if is_arm { r#"id="arm""# } else { r#"id="follower""# });
     }
-    page.path(&skeleton.coupler, true, r#"id="coupler""#);
+    if !skeleton.coupler.is_empty() {
+        page.path(&skeleton.coupler, true, r#"id="coupler""#);
+    }
+    for (name, corners) in &skeleton.links {
+        page.path(corners, corners.len() > 2, &format!(r#"id="{name}""#));
+    }
     page.push("</g>");
     if let Some(line_ends) = skeleton.line {
         page.push(&group("slider", &line(LINKS, &thin)));
-        let id = if skeleton.ground.is_none() { "rail" } else { "rod" };
+        let id = if skeleton.ground.is_empty() { "rail" } else { "rod" };
         page.path(
             &line_ends,
             false,

@@ -31,7 +31,7 @@ fn plates(subject: &Subject) -> Vec<Plate> {
         let radius = match plate.link {
             Link::Ground => 1.8,
             Link::Crank => 1.35,
-            Link::Coupler | Link::Follower | Link::Block => 1.25,
+            _ => 1.25,
         };
         let mut holes = plate.holes;
         holes.iter_mut().for_each(|hole| hole.at *= factor);

@@ -1,6 +1,7 @@
 //! An OpenSCAD script: every length is a parameter, the plates are laid out or assembled at a crank angle.
 
 mod four_bar;
+mod multi_loop;
 mod sliders;
 
 use super::model::Model;
@@ -39,7 +40,7 @@ pub(super) fn script(model: &Model<'_>) -> Result<String, Refusal> {
         CrankLinkage::FourBar(linkage) => four_bar::script(linkage),
         CrankLinkage::SliderCrank(linkage) => sliders::slider_crank(linkage, parts),
         CrankLinkage::InvertedSliderCrank(linkage) => sliders::inverted_slider_crank(linkage, parts),
-        CrankLinkage::MultiLoop(_) => return Err(Refusal::without_plates()),
+        CrankLinkage::MultiLoop(linkage) => multi_loop::script(linkage, parts),
     };
     let common = [
         ("hole", model.holes.pins, "diameter of the holes"),
