@@ -9,7 +9,7 @@ export interface Example {
   isWalker?: boolean;
 }
 
-/** Examples that come with the second script: motions and functions. */
+/** Examples that come with the second script: motions, functions, and a shape that no four-bar draws. */
 export const MORE = [
   "Hood hinge",
   "Sofa bed",
@@ -18,6 +18,7 @@ export const MORE = [
   "Excavator bucket",
   "Logarithm",
   "Dial by pairs",
+  "Letter A by a six-bar",
 ];
 
 /** The step of a foot, flat on the ground and lifted on the way back, under hips that stand above it. */

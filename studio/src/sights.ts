@@ -1,6 +1,8 @@
-// Examples of motions and functions.
+// Examples of motions and functions, and of shapes by six-bars.
 
 import type { Point, Task } from "./messages";
+
+const OWN = "drawn for the studio";
 
 /** Poses [x, y, degrees] as a task. */
 function motion(name: string, source: string, poses: [number, number, number][], more: Partial<Task> = {}): Task {
@@ -19,7 +21,7 @@ function motion(name: string, source: string, poses: [number, number, number][],
 /** A hood that opens, seen from its side; drawn for this page. */
 const HOOD: Task = motion(
   "hood-hinge",
-  "drawn for the studio",
+  OWN,
   [
     [-150, 0, 0],
     [-86, 40, -12],
@@ -92,7 +94,7 @@ const BLADE = motion(
 /** The leaf of a table, which hangs down and is lifted to the height of the top. */
 const LEAF: Task = motion(
   "drop-leaf",
-  "drawn for the studio",
+  OWN,
   [
     [60, -389, -90],
     [144, -282, -65],
@@ -113,35 +115,36 @@ LEAF.body = {
   ],
 };
 
-/** The crank turns by 60 degrees while x goes from 1 to 2, the follower by 90 as log10 x does. */
-const LOGARITHM: Task = {
-  name: "logarithm",
-  source: "the functions of textbooks",
-  points: Array.from({ length: 31 }, (_, k): Point => [2 * k, 90 * (Math.log10(1 + k / 30) / Math.log10(2))]),
-  function: { sense: "same", of: { formula: "log10(x)", over: [1, 2] } },
+/** What those that are no motions have in common. */
+const PLAIN: Pick<Task, "source" | "closed" | "types" | "transmission_deg_min" | "seed"> = {
+  source: OWN,
   closed: false,
   types: [],
   transmission_deg_min: 30,
   seed: 1,
 };
 
+/** The crank turns by 60 degrees while x goes from 1 to 2, the follower by 90 as log10 x does. */
+const LOGARITHM: Task = {
+  name: "logarithm",
+  points: Array.from({ length: 31 }, (_, k): Point => [2 * k, 90 * (Math.log10(1 + k / 30) / Math.log10(2))]),
+  function: { sense: "same", of: { formula: "log10(x)", over: [1, 2] } },
+  ...PLAIN,
+  source: "the functions of textbooks",
+};
+
 /** A dial that turns slowly at first: pairs to begin with. */
 const DIAL: Task = {
   name: "dial",
-  source: "made for the studio",
   points: [0, 1, 2, 3, 4, 5, 6].map((k): Point => [12 * k, Number((50 * (k / 6) ** 1.6).toFixed(1))]),
   function: {},
-  closed: false,
-  types: [],
-  transmission_deg_min: 30,
-  seed: 1,
+  ...PLAIN,
 };
 
 /** The bucket of an excavator: the rocker that the cylinder pushes turns by 95 degrees, the bucket by 154, fastest where it
  * curls into the ground. */
 const BUCKET: Task = {
   name: "excavator-bucket",
-  source: "made for the studio",
   points: [
     [0, 0],
     [20, 36],
@@ -151,10 +154,21 @@ const BUCKET: Task = {
     [95, 154],
   ],
   function: {},
-  closed: false,
-  types: [],
-  transmission_deg_min: 30,
-  seed: 1,
+  ...PLAIN,
+};
+
+/** The letter A in one stroke, which no four-bar draws: from each corner so many points, each so far from the one before. */
+const LETTER: Task = {
+  name: "letter-a",
+  unit: "mm",
+  points: [
+    [0, 0, 20, 2, 5],
+    [40, 100, 20, 2, -5],
+    [80, 0, 8, -2, 5],
+    [64, 40, 9, -6, 0],
+  ].flatMap(([x, y, n, u, v]) => Array.from({ length: n }, (_, k): Point => [x + k * u, y + k * v])),
+  mechanism: ["six-bar"],
+  ...PLAIN,
 };
 
 export const sights: Record<string, Task> = {
@@ -165,4 +179,5 @@ export const sights: Record<string, Task> = {
   "Excavator bucket": BUCKET,
   Logarithm: LOGARITHM,
   "Dial by pairs": DIAL,
+  "Letter A by a six-bar": LETTER,
 };

@@ -34,7 +34,7 @@ fn direction(phase: f64) -> ComplexLanes<f64> {
 }
 
 /// Unequal weights of the numbers of one chain, so that no two terms can be exchanged unseen.
-fn weighted(numbers: impl Iterator<Item = f64>) -> f64 {
+pub fn weighted(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.enumerate().map(|(i, x)| x * (1.0 + 0.37 * i as f64)).sum()
 }
 
@@ -52,7 +52,7 @@ fn value(chain: &DyadChain, phase: f64) -> f64 {
 }
 
 /// The derivative of [`value`] by the phase (0) or a parameter (from 1).
-fn slope(chain: &DyadChain, phase: f64, k: usize) -> f64 {
+pub fn slope(chain: &DyadChain, phase: f64, k: usize) -> f64 {
     let of = chain.proportions();
     let rates = Rates::of(&chain.shape, &of);
     let e = direction(phase);

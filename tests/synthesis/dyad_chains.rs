@@ -2,7 +2,7 @@
 
 use crate::common::root;
 use linkwright::internals::mechanism::chain::{Attachment, Stage};
-use linkwright::internals::mechanism::{Chain, Complex, DyadChainKind};
+use linkwright::internals::mechanism::{Chain, Complex, DyadChainKind, Mechanism};
 use linkwright::internals::synthesis::dyad_chains::{
     DyadChainAnswer, DyadChainLimits, DyadChainOutcome, DyadChainState, Request, Watch, search,
 };
@@ -113,7 +113,8 @@ fn check(answer: &DyadChainAnswer, request: &Request<'_>) {
     let mut least = f64::INFINITY;
     for i in 0..5000 {
         let at = simulated(&chain, TAU * f64::from(i) / 5000.0).expect("the crank turns fully");
-        for (x, y, f) in [("C", "B", "D"), ("X2", "Y2", "F2")] {
+        let dyads = [("C", "B", "D"), ("X2", "Y2", "F2"), ("X3", "Y3", "F3")];
+        for (x, y, f) in dyads.into_iter().take(answer.chain.shape.kind.dyads()) {
             let (x, y, f) = (at[x], at[y], at[f]);
             let [a, b] = [x, y].map(|end| (end.1 - f.1).atan2(end.0 - f.0));
             let angle = (a - b).rem_euclid(PI);
@@ -121,6 +122,15 @@ fn check(answer: &DyadChainAnswer, request: &Request<'_>) {
         }
     }
     assert!(answer.transmission <= least + 1e-9 && least - answer.transmission < 1e-3);
+    // The general chain says so, too, and puts P where the simulation does.
+    let analysed = Mechanism::crank_range(&chain);
+    assert!(analysed.turns_fully);
+    for phase in answer.phases.iter().step_by(7) {
+        let pose = chain.pose_at(phase + ground);
+        let p = pose.joints[Mechanism::traced(&chain)].expect("it closes");
+        let expected = simulated(&chain, phase + ground).expect("it closes")["P"];
+        assert!(apart((p.re, p.im), expected) < 1e-9 * diagonal);
+    }
     // In order, within one turn.
     let steps: Vec<f64> = answer.phases.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert!(steps.iter().all(|step| *step >= 0.0) || steps.iter().all(|step| *step <= 0.0));
@@ -159,19 +169,35 @@ fn check(answer: &DyadChainAnswer, request: &Request<'_>) {
 
 #[test]
 fn the_figures_of_answers_are_those_of_an_independent_simulation() {
-    for (name, closed, most) in [("square", true, 0.06), ("heart", true, 0.05), ("S", false, 0.01)] {
+    let eight_bars: Vec<DyadChainKind> = DyadChainKind::eight_bars().into_iter().step_by(9).collect();
+    let mut checked = 0;
+    for (name, closed, most, seeds) in [
+        ("square", true, 0.06, 3),
+        ("heart", true, 0.05, 3),
+        ("S", false, 0.01, 3),
+        ("figure-8", true, 0.05, 2),
+        ("letter-D", true, 0.05, 2),
+        ("L", true, 0.1, 2),
+    ] {
         let points = shape(name);
-        let request = request(&points, closed, ONE_ISLAND);
-        let found = found(&request);
-        let best = &found.answers[0];
-        assert!(best.accepted, "{name}");
-        assert!(best.rms < most * extent(&points).0, "{name}: {}", best.rms / extent(&points).0);
-        for answer in found.answers.iter().chain(&found.best_of_kinds) {
-            check(answer, &request);
+        let six = (1..=seeds).map(|seed| (&DyadChainKind::SIX_BARS[..], seed));
+        for (kinds, seed) in six.chain([(&eight_bars[..], 1)]) {
+            let request = Request { kinds, seed, ..request(&points, closed, ONE_ISLAND) };
+            let found = found(&request);
+            let best = &found.answers[0];
+            assert!(best.accepted, "{name}");
+            if seed == 1 && kinds.len() == DyadChainKind::SIX_BARS.len() {
+                assert!(best.rms < most * extent(&points).0, "{name}: {}", best.rms / extent(&points).0);
+            }
+            for answer in found.answers.iter().chain(&found.best_of_kinds) {
+                check(answer, &request);
+                checked += 1;
+            }
+            let accepted = found.answers.iter().filter(|answer| answer.accepted).count();
+            assert!(2 * accepted >= found.answers.len(), "{name}: {accepted}");
         }
-        let accepted = found.answers.iter().filter(|answer| answer.accepted).count();
-        assert!(2 * accepted >= found.answers.len(), "{name}: {accepted}");
     }
+    assert!(checked >= 200, "{checked}");
 }
 
 #[test]
