@@ -152,6 +152,11 @@ test("a six-bar is asked for, follows a point, moves with all of its joints, and
   // C, D and P, and the ends and the joint of the second dyad.
   assert.ok((await page.locator(`${figure} > g > .pin`).count()) >= 7);
   await shot(page, "six-bar");
+  // The longest distance of two joints of one link, of six links: a box around all cannot be many times as large.
+  for (const text of await page.locator("#strip .quality").allTextContents()) {
+    const [, longest, whole] = text.match(/longest link ([\d.]+)\s×\sthe path, whole ([\d.]+)/) ?? [];
+    if (whole) assert.ok(4 * Number(longest) >= Number(whole) && Number(longest) <= 3, text);
+  }
   const on = await dragPoint(page, 3, [5, 6], 6);
   assert.ok(
     on.every((cards) => cards.length > 0 && cards.every((text) => /six-bar/.test(text))),

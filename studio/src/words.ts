@@ -44,9 +44,28 @@ export function transmissionInWords(deg: number): Graded {
   return { grade: "poor", text: `${angle} (it jams)` };
 }
 
+/** The largest distance between two joints of one body of a six-bar or an eight-bar: each has its joints along and across
+ * its line, the ground its pivots. */
+function longestOfChain({ chain }: Linkage): number {
+  const { pivots, crank, dyad, point } = chain as NonNullable<Linkage["chain"]>;
+  const bodies = { ground: Object.values(pivots) as Point[] } as Record<string, Point[]>;
+  const line = (from: string, to: string, length: number) => {
+    bodies[`${from},${to}`] = [
+      [0, 0],
+      [length, 0],
+    ];
+  };
+  line(crank.pivot, crank.joint, crank.length);
+  for (const { joint, from, lengths } of dyad) from.forEach((end, i) => void line(end, joint, lengths[i]));
+  for (const { on, at } of point ?? []) bodies[on.join()].push(at as Point);
+  const within = (all: Point[]) => all.flatMap(([x, y]) => all.map(([u, v]) => Math.hypot(u - x, v - y)));
+  return Math.max(...Object.values(bodies).flatMap(within));
+}
+
 /** The largest distance between two joints of one body: of ground, a, b, c, d and e, or of those that a linkage with a
  * slider has. */
 export function longestOf(linkage: Linkage): number {
+  if (linkage.chain) return longestOfChain(linkage);
   const { a, b, c, d, e, coupler_x: x, coupler_y: y, kind } = linkage;
   const [[ax, ay], [bx, by] = [ax, ay]] = pivotsOf(linkage);
   const beside = Math.hypot(x ?? 0, y ?? 0);
