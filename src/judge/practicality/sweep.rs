@@ -66,7 +66,7 @@ impl Sweep {
 pub struct Positions<'a> {
     /// The sweep.
     pub sweep: &'a Sweep,
-    known: RefCell<HashMap<([u64; 2], bool), (Position, Reach)>>,
+    known: RefCell<HashMap<[u64; 3], (Position, Reach)>>,
 }
 
 impl<'a> Positions<'a> {
@@ -78,8 +78,8 @@ impl<'a> Positions<'a> {
     /// Returns the position in the middle of a stretch with the bounds within it; `None` if the loop is open.
     pub fn middle_of(&self, stretch: &Stretch) -> Option<(Position, Reach)> {
         // A rocking crank passes the same angles in either assembly.
-        let is_plus = stretch.assembly == AssemblyMode::Plus;
-        let key = ([stretch.from.to_bits(), stretch.to.to_bits()], is_plus);
+        let is_plus = u64::from(stretch.assembly == AssemblyMode::Plus);
+        let key = [stretch.from.to_bits(), stretch.to.to_bits(), is_plus];
         if let Some(known) = self.known.borrow().get(&key) {
             return Some(*known);
         }
