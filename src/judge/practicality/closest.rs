@@ -1,7 +1,7 @@
 //! The least value of a distance over a motion, by branch and bound.
 //!
 //! A distance between moving parts changes by no more than they move. On a stretch it is therefore at least its
-//! value in the middle less what [`Sweep::reach`] allows; the stretch with the least such bound is halved until
+//! value in the middle less what [`Positions::middle_of`] allows; the stretch with the least such bound is halved until
 //! the best value found is within a margin of it. Nothing between two samples can be missed.
 
 use super::sweep::{Position, Positions, Reach, Stretch};

@@ -15,7 +15,7 @@ impl CrankLinkage {
     }
 
     /// Returns P along and across the coupler from C, as lengths; of a six-bar along and across the line of its body
-    /// ([`multi_loop`](super::multi_loop)).
+    /// ([`multi_loop`](crate::mechanism::multi_loop)).
     pub fn coupler_offset(&self) -> Complex {
         match self {
             CrankLinkage::FourBar(linkage) => linkage.coupler_offset(),
