@@ -269,7 +269,8 @@ def test_a_six_bar_of_a_result_is_a_chain_that_draws_the_path(root: Path, tmp_pa
     assert math.sqrt(float(np.mean(errors**2))) == pytest.approx(best.error.rms, rel=1e-9)
     file = tmp_path / "six-bar.toml"
     file.write_text(chain.to_toml())
-    assert lw.load(file).names == chain.names
+    read = lw.load(file)
+    assert isinstance(read, lw.Chain) and read.names == chain.names
     assert b"LINK6" in lw.export(chain, "dxf-plates", unit="mm", scale=20)
     built = lw.build(best)
     assert "link5" in built.text and len(built.data["distances"]) == 28
