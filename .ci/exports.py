@@ -59,53 +59,9 @@ def sliders():
         yield path
 
 
-CHAINS = {
-    # The second dyad hangs on the crank and the coupler, the third on the second and on a pivot of its own.
-    "eight-bar": """
-trace = "P"
-pivots = { A = [0, 0], B = [60, 10], G = [40, -70] }
-crank = { pivot = "A", joint = "C", length = 15 }
-[[chain.dyad]]
-joint = "D"
-from = ["C", "B"]
-lengths = [50, 40]
-side = 1
-[[chain.point]]
-name = "S"
-on = ["A", "C"]
-at = [5, -12]
-[[chain.point]]
-name = "T"
-on = ["C", "D"]
-at = [25, -20]
-[[chain.dyad]]
-joint = "F"
-from = ["S", "T"]
-lengths = [45, 50]
-side = -1
-[[chain.point]]
-name = "U"
-on = ["S", "F"]
-at = [55, 6]
-[[chain.dyad]]
-joint = "H"
-from = ["U", "G"]
-lengths = [60, 55]
-side = 1
-[[chain.point]]
-name = "P"
-on = ["U", "H"]
-at = [20, -30]
-""",
-}
-
-
 def several_loops():
     yield Path("problems/linkages/watt-six-bar.toml")
-    for name, keys in CHAINS.items():
-        path = FOLDER / f"{name}.toml"
-        path.write_text(f'format = 1\nunit = "mm"\n[chain]{keys}')
-        yield path
+    yield Path("tests/corpora/linkage/eight-bar.toml")
 
 
 def export(linkage, form, **settings):

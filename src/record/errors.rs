@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The errors of a candidate, in the file's unit: of places; in a function of the output, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ErrorRecord {
-    /// What was minimised: the weighted sum of squared distances; or the largest distance, in parts of its
+    /// The objective, which was minimised: the weighted sum of squared distances; or the largest distance, in parts of its
     /// point's tolerance where tolerances are given.
     pub objective: f64,
     /// The unweighted sum of squared distances at the points, or of the output's errors.
@@ -14,7 +14,7 @@ pub struct ErrorRecord {
     pub rms: f64,
     /// The largest distance at a point, or error of the output.
     pub max: f64,
-    /// Where it is, counted from 0.
+    /// The number of the point at which it is, from 0.
     pub max_at: usize,
     /// rms over the diagonal of the target's bounding box; in a function, that of the outputs over their range.
     pub rms_over_size: f64,
@@ -26,7 +26,7 @@ pub struct ErrorRecord {
     /// In a function: the errors of the follower's angle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output: Option<AngleErrorRecord>,
-    /// Where the target was smoothed or resampled: distances of the points as they were given to that same curve.
+    /// The distances of the points as they were given to that same curve, where the target was smoothed or resampled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to_raw: Option<CurveErrorRecord>,
     /// In a path: the distance of path and coupler curve from each other, over equal arcs of both, whatever the timing.
@@ -59,7 +59,7 @@ pub struct AngleErrorRecord {
     pub rms_deg: f64,
     /// The largest, degrees.
     pub max_deg: f64,
-    /// Where it is, counted from 0.
+    /// The number of the point at which it is, from 0.
     pub max_at: usize,
 }
 

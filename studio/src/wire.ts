@@ -201,7 +201,7 @@ export interface Wire {
  */
 export interface AngleErrorRecord {
   /**
-   * Where it is, counted from 0.
+   * The number of the point at which it is, from 0.
    */
   max_at: number;
   /**

@@ -1,13 +1,13 @@
 //! Plates of six-bars and eight-bars: holes where the joints are, bounds of motions, stackings without crossings.
 
 use crate::dyad_chains::drawn;
-use linkwright::internals::judge::practicality::clearance::{Workpieces, pivot_distances};
-use linkwright::internals::judge::practicality::closest::{MARGIN, RELATIVE};
-use linkwright::internals::judge::practicality::layers::{Layering, layering};
+use crate::slider_plates::{layered, positions};
+use linkwright::internals::judge::practicality::clearance::pivot_distances;
+use linkwright::internals::judge::practicality::layers::Layering;
 use linkwright::internals::judge::practicality::sweep::Stretch;
-use linkwright::internals::judge::practicality::{Build, Closest, Joint, Sweep};
+use linkwright::internals::judge::practicality::{Build, Joint, Sweep};
 use linkwright::internals::mechanism::plates::{Link, Parts};
-use linkwright::internals::mechanism::{CrankLinkage, DyadChainKind, LoopJoints, MultiLoop};
+use linkwright::internals::mechanism::{DyadChainKind, MultiLoop};
 use linkwright::internals::numbers::arithmetic::streams::{stream, uniform};
 
 /// Linkages of every kind that a workshop could build: links of similar lengths, transmission angles of 15 degrees or more.
@@ -28,12 +28,6 @@ fn linkages(seed: u64, wanted: usize) -> Vec<MultiLoop> {
     }
     assert_eq!(all.len(), wanted);
     all
-}
-
-fn positions(sweep: &Sweep, n: u32) -> Vec<LoopJoints> {
-    let stretch = sweep.stretches[0];
-    let angle = |i| stretch.from + (stretch.to - stretch.from) * f64::from(i) / f64::from(n);
-    (0..=n).map(|i| sweep.linkage.joints_with(angle(i), stretch.assembly).expect("it closes")).collect()
 }
 
 /// The parts, of which no slot depends on the sizes.
@@ -116,26 +110,7 @@ fn distances_of_several_loops_are_bounded_and_near_the_least_of_a_fine_sweep() {
     let mut stacked = 0;
     for (i, linkage) in linkages(64, 20).into_iter().enumerate() {
         let sweep = Sweep::of_linkage(linkage).expect("its crank turns fully");
-        let hole = Build::usual_hole_of(&sweep, None).expect("there is room");
-        let build = Build::new(hole, hole);
-        let found = layering(&sweep, build).expect("it closes");
-        let pieces = Workpieces::new(&sweep, build).expect("it closes");
-        let positions = positions(&sweep, 2000);
-        let size = CrankLinkage::from(linkage).longest_link();
-        let check = |what: &str, closest: &Closest, of: &dyn Fn(&LoopJoints) -> f64| {
-            let sampled = positions.iter().map(of).fold(f64::INFINITY, f64::min);
-            let margin = (MARGIN * size).max(RELATIVE * closest.value.abs()) + 1e-9 * size;
-            assert!(closest.bound <= sampled + 1e-9 * size, "{i} {what}: {closest:?}, sampled {sampled}");
-            assert!(closest.value <= sampled + margin, "{i} {what}: {closest:?}, sampled {sampled}");
-            assert!(closest.value - closest.bound <= 1.01 * margin, "{i} {what}: {closest:?}");
-        };
-        for pair in &found.free_pairs {
-            let [one, other] = pair.plates;
-            check("plates", &pair.closest, &|at| pieces.between_plates_at(one, other, at));
-        }
-        for p in &found.pins_plates {
-            check("pin and plate", &p.closest, &|at| pieces.pin_to_plate_at(p.pin, p.plate, at));
-        }
+        let found = layered(i, &sweep);
         let joints = 2 + 3 * linkage.dyad_count();
         let distances = pivot_distances(&sweep).expect("it closes");
         assert_eq!(distances.len(), joints * (joints - 1) / 2);

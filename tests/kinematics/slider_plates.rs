@@ -2,7 +2,7 @@
 
 use linkwright::internals::judge::practicality::clearance::{Workpieces, pivot_distances};
 use linkwright::internals::judge::practicality::closest::{MARGIN, RELATIVE};
-use linkwright::internals::judge::practicality::layers::layering;
+use linkwright::internals::judge::practicality::layers::{Layering, layering};
 use linkwright::internals::judge::practicality::sensitivity::{Crank, along, sensitivity};
 use linkwright::internals::judge::practicality::{Build, Closest, Joint, Sweep};
 use linkwright::internals::mechanism::plates::Link;
@@ -54,10 +54,37 @@ fn linkages(seed: u64, count: u64) -> Vec<CrankLinkage> {
     (0..count).map(draw).collect()
 }
 
-fn positions(sweep: &Sweep, n: u32) -> Vec<LoopJoints> {
+/// Positions of the first stretch of a motion, `n` steps and its ends.
+pub fn positions(sweep: &Sweep, n: u32) -> Vec<LoopJoints> {
     let stretch = sweep.stretches[0];
     let angle = |i| stretch.from + (stretch.to - stretch.from) * f64::from(i) / f64::from(n);
     (0..=n).map(|i| sweep.linkage.joints_with(angle(i), stretch.assembly).expect("it closes")).collect()
+}
+
+/// Returns the layering of a linkage with holes of the usual size, whose distances are checked: none is below its bound, and each
+/// is near the least of a fine sweep.
+pub fn layered(label: usize, sweep: &Sweep) -> Layering {
+    let hole = Build::usual_hole_of(sweep, None).expect("there is room");
+    let build = Build::new(hole, hole);
+    let found = layering(sweep, build).expect("it closes");
+    let pieces = Workpieces::new(sweep, build).expect("it closes");
+    let positions = positions(sweep, 2000);
+    let size = sweep.linkage.longest_link();
+    let check = |what: &str, closest: &Closest, of: &dyn Fn(&LoopJoints) -> f64| {
+        let sampled = positions.iter().map(of).fold(f64::INFINITY, f64::min);
+        let margin = (MARGIN * size).max(RELATIVE * closest.value.abs()) + 1e-9 * size;
+        assert!(closest.bound <= sampled + 1e-9 * size, "{label} {what}: {closest:?}, sampled {sampled}");
+        assert!(closest.value <= sampled + margin, "{label} {what}: {closest:?}, sampled {sampled}");
+        assert!(closest.value - closest.bound <= 1.01 * margin, "{label} {what}: {closest:?}");
+    };
+    for pair in &found.free_pairs {
+        let [one, other] = pair.plates;
+        check("plates", &pair.closest, &|at| pieces.between_plates_at(one, other, at));
+    }
+    for p in &found.pins_plates {
+        check("pin and plate", &p.closest, &|at| pieces.pin_to_plate_at(p.pin, p.plate, at));
+    }
+    found
 }
 
 #[test]
@@ -65,26 +92,7 @@ fn distances_of_sliders_are_bounded_and_near_the_least_of_a_fine_sweep() {
     let mut stacked = 0;
     for (i, linkage) in linkages(51, 40).into_iter().enumerate() {
         let sweep = Sweep::of_linkage(linkage).expect("joined");
-        let hole = Build::usual_hole_of(&sweep, None).expect("there is room");
-        let build = Build::new(hole, hole);
-        let found = layering(&sweep, build).expect("it closes");
-        let pieces = Workpieces::new(&sweep, build).expect("it closes");
-        let positions = positions(&sweep, 2000);
-        let size = linkage.longest_link();
-        let check = |what: &str, closest: &Closest, of: &dyn Fn(&LoopJoints) -> f64| {
-            let sampled = positions.iter().map(of).fold(f64::INFINITY, f64::min);
-            let margin = (MARGIN * size).max(RELATIVE * closest.value.abs()) + 1e-9 * size;
-            assert!(closest.bound <= sampled + 1e-9 * size, "{i} {what}: {closest:?}, sampled {sampled}");
-            assert!(closest.value <= sampled + margin, "{i} {what}: {closest:?}, sampled {sampled}");
-            assert!(closest.value - closest.bound <= 1.01 * margin, "{i} {what}: {closest:?}");
-        };
-        for pair in &found.free_pairs {
-            let [one, other] = pair.plates;
-            check("plates", &pair.closest, &|at| pieces.between_plates_at(one, other, at));
-        }
-        for p in &found.pins_plates {
-            check("pin and plate", &p.closest, &|at| pieces.pin_to_plate_at(p.pin, p.plate, at));
-        }
+        let found = layered(i, &sweep);
         for distance in pivot_distances(&sweep).expect("it closes") {
             assert!(distance.closest.value >= 0.0);
         }

@@ -484,6 +484,38 @@ fn program(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     (output.status.code().expect("it ends"), text(output.stdout), text(output.stderr))
 }
 
+/// Exports a linkage in a format by the command.
+fn exported(folder: &Path, linkage: &str, format: &str, more: &[&str]) -> String {
+    let mut arguments = vec!["export", linkage, "--format", format];
+    arguments.extend(more);
+    let (code, out, complaints) = program(folder, &arguments);
+    assert_eq!(code, 0, "{linkage} {format}: {complaints}");
+    out
+}
+
+/// Checks that a linkage is written in every format that is text, and written the same again.
+fn every_format(linkage: &str) {
+    const FORMATS: [&str; 11] = [
+        "svg",
+        "svg-plates",
+        "dxf",
+        "dxf-plates",
+        "stl",
+        "scad",
+        "csv",
+        "toml",
+        "json",
+        "cut-list",
+        "cut-list-csv",
+    ];
+    let folder = tempfile::TempDir::new().expect("a folder");
+    for format in FORMATS {
+        let out = exported(folder.path(), linkage, format, &[]);
+        assert!(out.len() > 100 && !out.contains("NaN") && !out.contains("inf"), "{linkage} {format}");
+        assert_eq!(exported(folder.path(), linkage, format, &[]), out, "{linkage} {format}");
+    }
+}
+
 #[test]
 fn the_command_writes_whole_files_or_none() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -2,10 +2,11 @@
 //!
 //! Plates joined by a pin overlap at that pin, so each of the pairs ground-crank, crank-coupler, coupler-follower and
 //! follower-ground needs two layers. The pairs crank-follower and coupler-ground may share a plane if they stay apart over
-//! the whole motion. Six-bars and eight-bars have more of both. A block of a slider takes the place of the follower; its guide pins join it to the plate with the
-//! slot. A plate with a slot counts as if it were filled, except for the pins that always lie in the slot. A pin passes
-//! through all layers from one of its plates to the other; in those between, it must stay clear of every plate there and of
-//! every other pin that passes through them. Pins end flush with their plates, and every plate is one piece in one layer.
+//! the whole motion. Six-bars and eight-bars have more of both. A block of a slider takes the place of the follower; its
+//! guide pins join it to the plate with the slot. A plate with a slot counts as if it were filled, except for the pins that
+//! always lie in the slot. A pin passes through all layers from one of its plates to the other; in those between, it must
+//! stay clear of every plate there and of every other pin that passes through them. Pins end flush with their plates, and
+//! every plate is one piece in one layer.
 //! All stackings are tried, a plate at a time: at most n^n of n plates, less those that begin with a crossing.
 //!
 //! Two parts are clear if the proved bound of [`super::closest`] is above zero. Parts that touch within its margin
@@ -136,9 +137,9 @@ fn between(places: &[usize], pin: &Pin) -> std::ops::Range<usize> {
     one.min(other) + 1..one.max(other).max(one.min(other) + 1)
 }
 
-/// What must not come together in a stacking.
+/// The pairs of parts that cross if a stacking brings them together.
 struct Crossings {
-    /// The plates below a plate in the order of the links that may not share its layer, by plate.
+    /// For each plate, in the order of the links: the plates before it that may not share its layer.
     apart: Vec<Vec<usize>>,
     /// Pins and plates that may not be in a layer between the pin's two.
     pins_plates: Vec<(Pin, Link)>,
@@ -227,14 +228,11 @@ impl Layering {
         })
     }
 
-    /// Returns the pairs of links that pins join: along a loop in its order, otherwise in that of the links.
+    /// Returns the pairs of links that pins join, in the order of the links.
     pub fn joined(&self) -> Vec<[Link; 2]> {
-        let n = self.links.len();
-        if n == 4 {
-            return (0..n).map(|i| [self.links[i], self.links[(i + 1) % n]]).collect();
-        }
         let mut pairs: Vec<[Link; 2]> = self.all_pins.iter().map(|pin| pin.joins).collect();
         pairs.sort_by_key(|pair| pair.map(Link::place));
+        pairs.dedup();
         pairs
     }
 

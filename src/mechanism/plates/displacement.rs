@@ -167,7 +167,7 @@ fn chord(turn: f64) -> f64 {
 }
 
 /// Computes max |delta - delta(s)| over low <= s <= high, delta the angle between a link and the line to the far end of the other.
-fn change_of_angle([own, other]: [f64; 2], [low, apart, high]: [f64; 3]) -> f64 {
+pub(super) fn change_of_angle([own, other]: [f64; 2], [low, apart, high]: [f64; 3]) -> f64 {
     let (low, high) = (low.max((own - other).abs()), high.min(own + other));
     let delta = |s: f64| angle_opposite(other, s, own);
     let here = delta(apart);

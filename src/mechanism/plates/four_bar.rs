@@ -15,8 +15,7 @@
 //! exception.
 
 use super::kind::{Kind, Shape};
-use super::{Guide, Joint, Link, Pin, Placement, Reach, Sizes, Stretch};
-use crate::mechanism::four_bar::transmission::angle_opposite;
+use super::{Guide, Joint, Link, Pin, Placement, Reach, Sizes, Stretch, displacement};
 use crate::mechanism::{FourBar, LoopJoints, length, point};
 use std::f64::consts::PI;
 
@@ -84,18 +83,9 @@ impl Kind for FourBar {
 /// Computes max |delta - delta(s)| over a stretch, delta the angle at B opposite to the coupler.
 fn change_of_angle(linkage: &FourBar, stretch: &Stretch, s: f64) -> f64 {
     let (g, a) = (linkage.ground(), linkage.crank());
-    let (b, c) = (linkage.coupler(), linkage.follower());
-    let (near, far) = ((b - c).abs(), b + c);
     let ground = linkage.ground_angle();
     let ends = [linkage.diagonal(stretch.from), linkage.diagonal(stretch.to)];
-    let low = if stretch.holds(ground) { (g - a).abs() } else { ends[0].min(ends[1]) }.max(near);
-    let high = if stretch.holds(ground + PI) { g + a } else { ends[0].max(ends[1]) }.min(far);
-    let delta = |s: f64| angle_opposite(b, s, c);
-    let here = delta(s);
-    let mut change = (delta(low) - here).abs().max((delta(high) - here).abs());
-    let extreme = ((c - b) * (c + b)).max(0.0).sqrt();
-    if extreme > low && extreme < high {
-        change = change.max((delta(extreme) - here).abs());
-    }
-    change
+    let low = if stretch.holds(ground) { (g - a).abs() } else { ends[0].min(ends[1]) };
+    let high = if stretch.holds(ground + PI) { g + a } else { ends[0].max(ends[1]) };
+    displacement::change_of_angle([linkage.follower(), linkage.coupler()], [low, s, high])
 }

@@ -1,6 +1,6 @@
 //! The script of a four-bar.
 
-use super::Script;
+use super::{PLATE, Script};
 use crate::mechanism::FourBar;
 
 /// Returns the parameters and the body for a four-bar.
@@ -19,33 +19,20 @@ pub(super) fn script(linkage: &FourBar) -> Script {
             ("Px", offset.re, "P along C -> D, from C"),
             ("Py", offset.im, "P across C -> D, left positive"),
         ],
-        body: BODY.to_owned(),
+        body: [POINTS, PLATE, REST].concat(),
     }
 }
 
-/// The part of the script that draws; equations 10 to 18 of Romero (2016) give D and P.
-const BODY: &str = r#"
+/// The points of the plates.
+const POINTS: &str = r#"
 A = [Ax, Ay];
 B = [Bx, By];
 g = norm(B - A);
 P = [Px, Py];
-washer = thickness / 10; // between the layers of the assembly
-function sides(radius) = max(24, min(720, ceil(180 / max(0.25, acos(max(0, 1 - chord / radius))))));
+"#;
 
-// A plate: the hull of its holes grown by a radius r, holes taken out. A hole is x, y and its diameter.
-function radius(largest) = max(hole, largest) / 2 + margin;
-module plate(holes, r) {
-    difference() {
-        linear_extrude(thickness) hull()
-            for (h = holes) translate([h.x, h.y]) circle(r = r, $fn = sides(r));
-        for (h = holes) translate([h.x, h.y, -thickness])
-            cylinder(d = h.z, h = 3 * thickness, $fn = sides(h.z / 2));
-    }
-}
-r = radius(hole);
-r_ground = radius(boss_hole);
-r_crank = radius(motor_hole);
-module ground() plate([[0, 0, boss_hole], [g, 0, hole]], r_ground);
+/// The plates and the assembly; equations 10 to 18 of Romero (2016) give D and P.
+const REST: &str = r#"module ground() plate([[0, 0, boss_hole], [g, 0, hole]], r_ground);
 module crank() plate([[0, 0, motor_hole], [a, 0, hole]], r_crank);
 module coupler() plate([[0, 0, hole], [b, 0, hole], [P.x, P.y, hole]], r);
 module follower() plate([[0, 0, hole], [c, 0, hole]], r);

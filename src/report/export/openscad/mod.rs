@@ -70,3 +70,22 @@ pub(super) fn script(model: &Model<'_>) -> Result<String, Refusal> {
     out.push_str(&own.body);
     Ok(out)
 }
+
+/// The module of a plate with round holes, and the radii of plates.
+const PLATE: &str = r#"washer = thickness / 10; // between the layers of the assembly
+function sides(radius) = max(24, min(720, ceil(180 / max(0.25, acos(max(0, 1 - chord / radius))))));
+
+// A plate: the hull of its holes grown by a radius r, holes taken out. A hole is x, y and its diameter.
+function radius(largest) = max(hole, largest) / 2 + margin;
+module plate(holes, r) {
+    difference() {
+        linear_extrude(thickness) hull()
+            for (h = holes) translate([h.x, h.y]) circle(r = r, $fn = sides(r));
+        for (h = holes) translate([h.x, h.y, -thickness])
+            cylinder(d = h.z, h = 3 * thickness, $fn = sides(h.z / 2));
+    }
+}
+r = radius(hole);
+r_ground = radius(boss_hole);
+r_crank = radius(motor_hole);
+"#;

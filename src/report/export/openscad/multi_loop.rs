@@ -1,6 +1,6 @@
 //! The scripts of six-bars and eight-bars: the dyads one after the other, each link in the frame of its line.
 
-use super::{Parameter, Script};
+use super::{PLATE, Parameter, Script};
 use crate::mechanism::MultiLoop;
 use crate::mechanism::dyad_chain::kinds::{CRANK, GROUND, MAX_BODIES};
 use crate::mechanism::multi_loop::Body;
@@ -56,7 +56,7 @@ pub(super) fn script(linkage: &MultiLoop, parts: &Parts) -> Script {
     Script {
         t1: "1: D lies left of the line from C to B; -1: right",
         numbers,
-        body: [FUNCTIONS, &frames(linkage), &plates(linkage, parts), LAYOUT].concat(),
+        body: ["\n", PLATE, FUNCTIONS, &frames(linkage), &plates(linkage, parts), LAYOUT].concat(),
     }
 }
 
@@ -127,22 +127,6 @@ fn plates(linkage: &MultiLoop, parts: &Parts) -> String {
 
 /// The functions, the ground and the first dyad; F = X + V (x + i t h) as of every dyad.
 const FUNCTIONS: &str = r#"
-washer = thickness / 10; // between the layers of the assembly
-function sides(radius) = max(24, min(720, ceil(180 / max(0.25, acos(max(0, 1 - chord / radius))))));
-function radius(largest) = max(hole, largest) / 2 + margin;
-r = radius(hole);
-r_ground = radius(boss_hole);
-r_crank = radius(motor_hole);
-
-// A plate: the hull of its holes grown by a radius r, holes taken out.
-module plate(holes, r) {
-    difference() {
-        linear_extrude(thickness) hull()
-            for (h = holes) translate([h.x, h.y]) circle(r = r, $fn = sides(r));
-        for (h = holes) translate([h.x, h.y, -thickness])
-            cylinder(d = h.z, h = 3 * thickness, $fn = sides(h.z / 2));
-    }
-}
 function hole_at(p, diameter) = [p.x, p.y, diameter];
 
 // A frame is a point and a direction; a place z in it is point + direction z, as complex numbers.
