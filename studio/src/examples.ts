@@ -14,11 +14,11 @@ export const MORE = [
   "Hood hinge",
   "Sofa bed",
   "Drop leaf",
-  "Bulldozer blade",
-  "Excavator bucket",
+  "Bulldozer",
+  "Excavator",
   "Logarithm",
   "Dial by pairs",
-  "Letter A by a six-bar",
+  "Letter A",
 ];
 
 /** The step of a foot, flat on the ground and lifted on the way back, under hips that stand above it. */

@@ -175,9 +175,9 @@ export const sights: Record<string, Task> = {
   "Hood hinge": HOOD,
   "Sofa bed": SOFA,
   "Drop leaf": LEAF,
-  "Bulldozer blade": BLADE,
-  "Excavator bucket": BUCKET,
+  Bulldozer: BLADE,
+  Excavator: BUCKET,
   Logarithm: LOGARITHM,
   "Dial by pairs": DIAL,
-  "Letter A by a six-bar": LETTER,
+  "Letter A": LETTER,
 };

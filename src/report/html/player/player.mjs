@@ -122,6 +122,13 @@ export class Player {
         },
       });
     };
+    const key = (kind, text) =>
+      element("span", { class: "key" }, [
+        shape("svg", { class: "chart", width: 18, height: 8, "aria-hidden": "true" }, [
+          shape("path", { class: `line ${kind}`, d: "M0 4h18" }),
+        ]),
+        text,
+      ]);
     this.errors = new ErrorChart(place, {
       title: `Error at the ${this.noun}s`,
       noun: this.noun,
@@ -145,6 +152,9 @@ export class Player {
       ],
       read: (sample) => `${figure(sample.mu, 4)}°`,
     });
+    this.dyads = [key("main", "at D"), key("along-x", "at F2"), key("along-y", "at F3")];
+    const dyads = element("span", { class: "keys" }, this.dyads);
+    place.append(element("p", { class: "chart-note" }, [dyads]));
     this.velocity = rates("Velocity of P", "v", 1, "s");
     this.acceleration = rates("Acceleration of P", "a", 2, "s²");
     const speed = element("input", {
@@ -161,13 +171,6 @@ export class Player {
       this.rpm = rpm;
       this.drawRates();
     });
-    const key = (kind, text) =>
-      element("span", { class: "key" }, [
-        shape("svg", { class: "chart", width: 18, height: 8, "aria-hidden": "true" }, [
-          shape("path", { class: `line ${kind}`, d: "M0 4h18" }),
-        ]),
-        text,
-      ]);
     place.append(
       element("p", { class: "chart-note" }, [
         element("label", {}, ["With the crank at ", speed, " turns a minute. "]),
@@ -193,6 +196,11 @@ export class Player {
     this.scrubLabel.textContent = drive.kind === "through" ? "Place on the motion" : "Crank angle";
     this.samples = this.cycle.samples();
     this.errors.show(this.cycle);
+    // A line for each dyad of a six-bar.
+    const lines = this.samples.find((sample) => sample)?.mus?.length ?? 0;
+    this.dyads.forEach((one, i) => {
+      one.hidden = lines < 2 || i >= lines;
+    });
     const least = this.options.transmissionMin;
     this.mu.show(this.cycle, this.samples, least ? [least, 180 - least] : [], least ? "dashed: asked" : "");
     this.drawRates();
