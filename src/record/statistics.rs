@@ -4,7 +4,7 @@
 //! a tolerance of [`WITHIN`]. Below the problem's exactness floor every figure counts as zero: there, only rounding is
 //! left.
 
-use super::Reason;
+use super::{Reason, TwoSidedRecord};
 use serde::Serialize;
 
 /// The relative tolerance within which a figure reaches another: published optima have seven digits and more.
@@ -36,6 +36,9 @@ pub struct Run {
     pub sum_sq: Option<f64>,
     /// The sum of squared distances of the points to that candidate's whole curve.
     pub to_curve_sum_sq: Option<f64>,
+    /// In a path: the distance of it and that candidate's curve from each other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub two_sided: Option<TwoSidedRecord>,
     /// In a motion: the other errors of that candidate.
     #[serde(flatten)]
     pub motion: Option<MotionErrors>,
@@ -116,6 +119,9 @@ pub struct Best {
     pub sum_sq: f64,
     /// The sum of squared distances of the points to the whole curve.
     pub to_curve_sum_sq: Option<f64>,
+    /// In a path: the distance of it and the curve from each other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub two_sided: Option<TwoSidedRecord>,
     /// In a motion: its other errors.
     #[serde(flatten)]
     pub motion: Option<MotionErrors>,
@@ -139,8 +145,8 @@ impl Summary {
         let figures: Vec<f64> = accepted().filter_map(Run::figure).collect();
         let reached = |by: fn(&Bar, f64) -> bool| figures.iter().filter(|figure| by(bar, **figure)).count();
         let of = |run: &Run| {
-            let Run { seed, sum_sq, to_curve_sum_sq, motion, .. } = *run;
-            Some(Best { seed, sum_sq: sum_sq?, to_curve_sum_sq, motion })
+            let Run { seed, sum_sq, to_curve_sum_sq, two_sided, motion, .. } = *run;
+            Some(Best { seed, sum_sq: sum_sq?, to_curve_sum_sq, two_sided, motion })
         };
         Summary {
             accepted: accepted().count(),
@@ -198,6 +204,7 @@ mod tests {
             accepted,
             sum_sq: Some(sum_sq),
             to_curve_sum_sq: Some(0.5 * sum_sq),
+            two_sided: None,
             motion: None,
             evaluations: 100 * seed,
             search_s: 0.25 * seed as f64,

@@ -106,6 +106,7 @@ fn a_suite_holds_what_each_run_by_itself_gives() {
         let first = &record.candidates[0];
         assert_eq!((entry.sum_sq, entry.accepted), (Some(first.error.sum_sq), first.accepted));
         assert_eq!(entry.to_curve_sum_sq, Some(first.error.to_curve.sum_sq));
+        assert!(entry.two_sided.is_some() && entry.two_sided == first.error.two_sided);
         assert_eq!(
             (entry.evaluations, entry.reason),
             (record.evaluations.objective, record.termination.reason)

@@ -300,6 +300,7 @@ impl Runner<'_> {
                 accepted: first.is_some_and(|c| c.accepted),
                 sum_sq: first.map(|c| c.error.sum_sq),
                 to_curve_sum_sq: first.map(|c| c.error.to_curve.sum_sq),
+                two_sided: first.and_then(|c| c.error.two_sided),
                 motion: first.and_then(|c| motion_errors(problem, c)),
                 evaluations: record.evaluations.objective,
                 search_s,

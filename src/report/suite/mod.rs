@@ -10,6 +10,7 @@ use super::grid::{Cell, Colour, Column, Grid, Ink, plain};
 use super::text::{
     COLUMNS, NO_NUMBER, brief, clean, clean_sentence, grouped, markdown, percent_up, significant, wrapped,
 };
+use crate::record::TwoSidedRecord;
 use crate::record::suite::{MethodResult, ProblemResult, PublishedResult, Suite};
 use sections::sections;
 
@@ -24,6 +25,9 @@ const WHAT: &str = "sum of sq: the least sum of squared distances at the crank a
     of the accepted answers of all seeds; to curve: the sum of squared distances of the points to the best \
     answer's whole curve; hits: seeds whose answer is accepted and reaches the best known sum, or the goal \
     where one is set, within 1e-6 of it; evaluations: of the objective, median.";
+const STRAYS: &str = "both ways: the mean distance of the path and the best answer's curve from each other, there and back \
+    added, over 2,000 points of equal arcs each; farthest: the largest such distance. Both over the root mean square radius of \
+    the path: a curve that meets its points and goes astray between them has a large one.";
 const TIMES: &str = "ms: the median and the worst time of a search, of one thread, from the checked problem \
     to ranked, refereed candidates; times depend on the machine, the other figures do not.";
 const PROVED: &str = "proved gap: no linkage of the kind that is told below has a sum of squares more than this below the \
@@ -42,7 +46,9 @@ pub fn suite_text(suite: &Suite, colour: Colour) -> String {
         out.push('\n');
         out.push_str(&beside(&paths).shortened(NAME).render(colour));
         out.push('\n');
-        out.extend([WHAT, TIMES, BESIDE].map(said));
+        out.push_str(&strays(&paths).shortened(NAME).render(colour));
+        out.push('\n');
+        out.extend([WHAT, TIMES, BESIDE, STRAYS].map(said));
         out.extend(is_certified(&paths).then(|| said(PROVED)));
     }
     for section in sections(motions, functions) {
@@ -115,6 +121,10 @@ pub fn suite_markdown(suite: &Suite) -> String {
         out.push_str(&beside(&paths).markdown());
         out.push('\n');
         out.push_str(&paragraph(BESIDE));
+        out.push_str("## The whole curve\n\n");
+        out.push_str(&strays(&paths).markdown());
+        out.push('\n');
+        out.push_str(&paragraph(STRAYS));
     }
     if !has_paths && suite.problems.iter().all(|problem| problem.published.is_empty()) {
         return out.trim_end().to_owned() + "\n";
@@ -251,6 +261,24 @@ fn beside(problems: &[&ProblemResult]) -> Grid {
         grid.row(cells);
     }
     grid
+}
+
+/// Returns the table of the distances of paths and curves from each other.
+fn strays(problems: &[&ProblemResult]) -> Grid {
+    let of = |p: &ProblemResult, figure: fn(&TwoSidedRecord) -> f64| {
+        let best = p.search.summary.best.as_ref();
+        number(best.and_then(|best| best.two_sided.as_ref()).map(figure), 3)
+    };
+    Grid::of(
+        problems,
+        &[
+            (Left, "problem", &|p| plain(clean(&p.name))),
+            (Right, "both ways", &|p| of(p, |distance| distance.mean_over_radius)),
+            (Right, "farthest", &|p| {
+                of(p, |distance| distance.worst / distance.mean * distance.mean_over_radius)
+            }),
+        ],
+    )
 }
 
 fn published(suite: &Suite) -> Grid {
