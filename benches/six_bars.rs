@@ -150,6 +150,7 @@ fn shapes(options: &Options) {
             let request = Request {
                 points: &points,
                 closed: *closed,
+                timing: None,
                 kinds: &kinds,
                 counter_clockwise: false,
                 limits,
@@ -247,6 +248,7 @@ fn random(options: &Options) {
         let request = Request {
             points: &points,
             closed: true,
+            timing: None,
             kinds: &DyadChainKind::SIX_BARS,
             counter_clockwise: false,
             limits: DyadChainLimits {

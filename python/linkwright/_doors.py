@@ -339,8 +339,10 @@ def snap(
         linkage: a candidate, a result (its first candidate), a linkage (measured on its own curve) or a path.
         grid: the stock: multiples of this; or `lengths`: these lengths, shape (n,); or `pitches`: the lengths in this text
             file, one a line or separated by commas. One of the three.
-        snap: the hole distances that are snapped; where silent, those of ``ground, a, b, c, d, e`` that its kind has.
-        keep: what stays exactly as it is: ``ground, a, b, c, d, e, A, B, ground_angle_deg``.
+        snap: the hole distances that are snapped: ``ground, a, b, c, d, e``, of a six-bar also two joints, such as ``X2F2``;
+            where silent, all that the linkage has.
+        keep: what stays exactly as it is: hole distances, ``A, B, ground_angle_deg``, of a six-bar also its third pivot, such
+            as ``Y2``.
         set: dimensions with values of their own.
 
     Returns:

@@ -10,7 +10,9 @@ use crate::waiting::{Ended, carrying, run, run_whole};
 use crate::{pools, values};
 use linkwright::internals::app::comparison::{self, NotCompared, Target};
 use linkwright::internals::app::inputs::{self, Given};
-use linkwright::internals::app::snapping::{Subject as Snapping, fixed, pitches as read_pitches};
+use linkwright::internals::app::snapping::{
+    KEPT, Subject as Snapping, fixed, pitches as read_pitches, to_snap,
+};
 use linkwright::internals::app::suite::choice::{chosen, collection};
 use linkwright::internals::app::suite::{Options as SuiteOptions, Step, suite as run_suite};
 use linkwright::internals::files::linkage_file::{self, AnyLinkageFile, LinkageFile};
@@ -291,25 +293,21 @@ pub fn snap<'py>(
         };
         let named = |key: &String| {
             Length::named(key)
-                .ok_or_else(|| refused(format!("{key}: a hole distance is one of ground, a, b, c, d, e")))
+                .ok_or_else(|| refused(format!("{key}: a hole distance is one of ground, a, b, c, d, e, or of a six-bar two joints, such as X2F2")))
         };
-        let lengths = match snap {
-            Some(snap) => snap.iter().map(named).collect::<PyResult<Vec<_>>>()?,
-            None => Length::ALL.to_vec(),
-        };
-        let others = ["A", "B", "ground_angle_deg"];
+        let asked = snap.map(|snap| snap.iter().map(named).collect::<PyResult<Vec<_>>>()).transpose()?;
         if let Some(key) =
-            keep.iter().find(|key| Length::named(key).is_none() && !others.contains(&key.as_str()))
+            keep.iter().find(|key| Length::named(key).is_none() && !KEPT.contains(&key.as_str()))
         {
             return Err(refused(format!(
-                "{key}: what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg"
+                "{key}: what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg, or of a six-bar two joints, such as X2F2, or its third pivot"
             )));
         }
         for (key, value) in &set {
             let length = Length::named(key).is_some();
-            if !length && key != others[2] {
+            if !length && key != "ground_angle_deg" {
                 return Err(refused(format!(
-                    "{key}: what can be set is one of ground, a, b, c, d, e, ground_angle_deg"
+                    "{key}: what can be set is one of ground, a, b, c, d, e, ground_angle_deg, or of a six-bar two joints, such as X2F2"
                 )));
             }
             if !value.is_finite() || (length && *value <= 0.0) {
@@ -317,7 +315,9 @@ pub fn snap<'py>(
             }
         }
         let subject = Snapping::of(given(subject, which)?).map_err(refused)?;
-        let fixed = fixed(&subject.candidate.linkage, &keep, &set).map_err(refused)?;
+        let linkage = &subject.candidate.linkage;
+        let fixed = fixed(linkage, &keep, &set).map_err(refused)?;
+        let lengths = to_snap(linkage, asked.as_deref()).map_err(refused)?;
         let wanted = subject.problem.spec().solve.candidates;
         let request = SnapRequest { stock, lengths, fixed, wanted };
         let Ended { value, interrupt } = run(py, pools::threads(threads)?, None, move |talk| {

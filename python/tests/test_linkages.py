@@ -278,9 +278,24 @@ def test_a_six_bar_of_a_result_is_a_chain_that_draws_the_path(root: Path, tmp_pa
     assert again["rms"].max() == pytest.approx(best.error["rms"], rel=0.02)
 
 
+def test_lengths_of_a_six_bar_are_snapped(root: Path) -> None:
+    chain = lw.load(root / "problems" / "linkages" / "watt-six-bar.toml")
+    snapped = lw.snap(chain, grid=4.0, snap=["a", "X2F2", "F2Y2"])
+    best = snapped.candidates[0].linkage
+    assert isinstance(best, lw.Chain)
+    at = best.positions(ANGLES[:1])
+    for one, other in (("A", "C"), ("X2", "F2"), ("Y2", "F2")):
+        apart = np.hypot(*(at[one] - at[other]).T)[0]
+        assert apart / 4.0 == pytest.approx(round(apart / 4.0), abs=1e-9)
+    assert lw.verify(snapped).ok
+    with pytest.raises(lw.ProblemError, match="a six-bar has no such dimension"):
+        lw.snap(chain, grid=4.0, keep=["AF2"])
+
+
 @pytest.mark.parametrize("linkage", SLIDERS, ids=lambda linkage: str(linkage.kind))
 def test_lengths_of_a_linkage_with_a_slider_are_snapped(linkage: lw.SliderLinkage) -> None:
-    snapped = lw.snap(linkage, grid=0.07, snap=["a", "b", "ground"])
+    wished = ["a", "b"] if linkage.b is not None else ["a", "ground"]
+    snapped = lw.snap(linkage, grid=0.07, snap=wished)
     best = snapped.candidates[0].linkage
     assert isinstance(best, lw.SliderLinkage) and best.kind == linkage.kind
     lengths = [best.a] + [length for length in (best.b,) if length is not None]

@@ -4,10 +4,10 @@
 use crate::app::inputs::{Given, NoCandidate};
 use crate::files::diagnostic::{Diagnostic, escaped};
 use crate::files::input_text;
-use crate::mechanism::{CrankLinkage, LinkageKind, Unit, xy};
+use crate::mechanism::{Complex, CrankLinkage, LinkageKind, Unit, xy};
 use crate::record::{Candidate, ProblemRecord};
 use crate::report::text::clean;
-use crate::synthesis::snap::{Fixed, Length, Stock, own_curve};
+use crate::synthesis::snap::{Fixed, JointName, Length, Stock, own_curve};
 use crate::task::{Problem, TaskError};
 use std::path::Path;
 
@@ -43,9 +43,6 @@ pub enum NoSubject {
     /// The problem of the record is invalid.
     #[error(transparent)]
     Problem(#[from] TaskError),
-    /// The linkage has several loops.
-    #[error("{0}: the lengths of six-bars and eight-bars are not brought to stock sizes yet")]
-    SeveralLoops(String),
     /// The candidate lacks a position.
     #[error("{0} has no position for each of the target's points")]
     Positions(String),
@@ -58,14 +55,6 @@ impl Subject {
     /// # Errors
     /// [`NoSubject`].
     pub fn of(given: Given) -> Result<Self, NoSubject> {
-        let subject = Subject::of_any(given)?;
-        match subject.candidate.linkage.multi_loop() {
-            Some(_) => Err(NoSubject::SeveralLoops(subject.label)),
-            None => Ok(subject),
-        }
-    }
-
-    fn of_any(given: Given) -> Result<Self, NoSubject> {
         match given {
             Given::Linkage(file) => {
                 let found = own_curve(&file.linkage);
@@ -94,38 +83,63 @@ impl Subject {
 pub struct NoDimension {
     key: String,
     kind: LinkageKind,
-    has: Vec<&'static str>,
+    has: Vec<String>,
 }
 
-/// Returns the dimensions that are fixed: those of the linkage that are kept (`ground, a, b, c, d, e, A, B` or
+impl NoDimension {
+    fn of(linkage: &CrankLinkage, key: &str) -> Self {
+        let lengths = Length::all(linkage).into_iter().map(Length::key);
+        let pivots = pivots(linkage).into_iter().map(|(name, _)| name.to_owned());
+        NoDimension { key: key.to_owned(), kind: linkage.kind(), has: lengths.chain(pivots).collect() }
+    }
+}
+
+/// Returns the fixed pivots of a linkage, by name.
+fn pivots(linkage: &CrankLinkage) -> Vec<(&'static str, Complex)> {
+    match linkage.multi_loop() {
+        Some(linkage) => linkage.named_pivots(),
+        None => {
+            let second = linkage.second_pivot().map(|at| ("B", at));
+            [("A", linkage.crank_pivot())].into_iter().chain(second).collect()
+        }
+    }
+}
+
+/// Returns the lengths that are to be snapped: those that are asked for, else all that the linkage has.
+///
+/// # Errors
+/// [`NoDimension`].
+pub fn to_snap(linkage: &CrankLinkage, asked: Option<&[Length]>) -> Result<Vec<Length>, NoDimension> {
+    let all = Length::all(linkage);
+    let Some(asked) = asked else { return Ok(all) };
+    match asked.iter().find(|length| !all.contains(length)) {
+        Some(missing) => Err(NoDimension::of(linkage, &missing.key())),
+        None => Ok(asked.to_vec()),
+    }
+}
+
+/// Returns the dimensions that are fixed: those of the linkage that are kept (lengths and fixed pivots by their names, or
 /// `ground_angle_deg`), and those that are put at a value of their own.
 ///
 /// # Errors
 /// [`NoDimension`].
 pub fn fixed(linkage: &CrankLinkage, keep: &[String], set: &[(String, f64)]) -> Result<Fixed, NoDimension> {
     let mut fixed = Fixed::default();
-    let second = linkage.second_pivot();
-    let missing = |key: &str| NoDimension {
-        key: key.to_owned(),
-        kind: linkage.kind(),
-        has: Length::ALL
-            .into_iter()
-            .filter(|length| length.of(*linkage).is_some())
-            .map(Length::key)
-            .collect(),
-    };
+    let missing = |key: &str| NoDimension::of(linkage, key);
     for key in keep {
-        match (Length::named(key), key.as_str()) {
-            (Some(length), _) => {
+        let pivot = pivots(linkage).into_iter().find(|(name, _)| name == key);
+        match (Length::named(key), pivot, JointName::named(key)) {
+            (Some(length), ..) => {
                 let value = length.of(*linkage).ok_or_else(|| missing(key))?;
                 fixed = fixed.with(length, value);
             }
-            (None, "A") => fixed.crank_pivot = Some(xy(linkage.crank_pivot())),
-            (None, "B") => fixed.follower_pivot = Some(xy(second.ok_or_else(|| missing(key))?)),
-            (None, _) => {
-                second.ok_or_else(|| missing(key))?;
+            (None, Some(("A", at)), _) => fixed.crank_pivot = Some(xy(at)),
+            (None, Some(("B", at)), _) => fixed.follower_pivot = Some(xy(at)),
+            (None, Some((_, at)), Some(joint)) => fixed.further_pivots.push((joint, xy(at))),
+            (None, ..) if key == ANGLE && linkage.second_pivot().is_some() => {
                 fixed.ground_angle_deg = Some(linkage.ground_angle().to_degrees());
             }
+            (None, ..) => return Err(missing(key)),
         }
     }
     for (key, value) in set {
@@ -135,13 +149,18 @@ pub fn fixed(linkage: &CrankLinkage, keep: &[String], set: &[(String, f64)]) -> 
                 fixed = fixed.with(length, *value);
             }
             None => {
-                second.ok_or_else(|| missing(key))?;
+                linkage.second_pivot().ok_or_else(|| missing(key))?;
                 fixed.ground_angle_deg = Some(*value);
             }
         }
     }
     Ok(fixed)
 }
+
+/// The names of what can be kept beside lengths: fixed pivots, and the direction from A to B.
+pub const KEPT: [&str; 7] = ["A", "B", "X2", "Y2", "X3", "Y3", ANGLE];
+/// The direction from A to B.
+const ANGLE: &str = "ground_angle_deg";
 
 /// Reads a stock from a text file: its lengths, one a line or separated by commas.
 ///

@@ -3,6 +3,8 @@
 //! The figures and limits are the candidate's own, as the referee judged them: the same record always has the
 //! same warnings.
 
+use crate::judge::practicality::layers::can_be_stacked;
+use crate::judge::practicality::{Build, Sweep};
 use crate::mechanism::four_bar::transmission::{ForceTransmission, JAM_UNDER_LOAD_DEG};
 use crate::mechanism::{LinkageType, least_and_greatest};
 use crate::record::{Candidate, Figure, ON_BOUND_TEXT, Requirement, Warning, WarningKind};
@@ -21,8 +23,8 @@ pub const ON_BOUND: f64 = 1e-6;
 /// Relative tolerance for rounding when a figure is compared with a limit, as for requirements.
 const ROUNDING: f64 = 1e-7;
 
-/// Returns the warnings of a candidate: transmission angle, link ratio, change point, a closed path that is run to and
-/// fro, then each limit that it lies on.
+/// Returns the warnings of a candidate: transmission angle, link ratio, change point, plates that cannot be stacked, a closed path that
+/// is run to and fro, then each limit that it lies on.
 pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
     let mut list = Vec::new();
     let mut push = |kind, key: &str, value: f64, limit: f64, text: String| {
@@ -46,6 +48,12 @@ pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
         let text = format!("Grashof margin {}: almost a change point", shown(margin));
         push(WarningKind::ChangePoint, "grashof_margin", margin, least, text);
     }
+    if let Some((plates, hole)) = unstackable(problem, candidate) {
+        let hole = shown(hole);
+        let text =
+            format!("its plates cannot be stacked, each in one layer, with holes of {hole}: see build");
+        push(WarningKind::Stacking, "layers", 0.0, plates as f64, text);
+    }
     if candidate.goes_to_and_fro() {
         let [least, greatest] = least_and_greatest(candidate.crank_deg.iter().copied());
         let swept = greatest - least;
@@ -63,6 +71,16 @@ pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
         });
     }
     list
+}
+
+/// Returns the number of plates of a six-bar or an eight-bar that cannot be stacked, each in one layer, over the motion of a candidate,
+/// with the diameter of their holes: the default one without a unit. The plates of linkages of one loop are not tried.
+fn unstackable(problem: &Problem, candidate: &Candidate) -> Option<(usize, f64)> {
+    let linkage = candidate.linkage.multi_loop()?;
+    let sweep = Sweep::of_candidate(problem, candidate)?;
+    let hole = Build::usual_hole_of(&sweep, None)?;
+    let can = can_be_stacked(&sweep, Build::new(hole, hole))?;
+    (!can).then(|| (linkage.links().len(), hole))
 }
 
 /// Returns whether a warning is about the linkage itself, and not about the problem's limits or a motion that the

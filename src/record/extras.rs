@@ -15,6 +15,8 @@ pub enum WarningKind {
     LinkRatio,
     /// The Grashof margin is below a thousandth of the longest link.
     ChangePoint,
+    /// The plates of a six-bar or an eight-bar cannot be stacked, each in one layer.
+    Stacking,
     /// A limit of the problem decides the answer.
     OnBound,
     /// The motion returns to its first point only by going back through all others.
@@ -28,6 +30,7 @@ impl WarningKind {
             WarningKind::TransmissionAngle => "transmission-angle",
             WarningKind::LinkRatio => "link-ratio",
             WarningKind::ChangePoint => "change-point",
+            WarningKind::Stacking => "stacking",
             WarningKind::OnBound => "on-bound",
             WarningKind::ToAndFro => "to-and-fro",
         }

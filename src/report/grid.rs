@@ -64,21 +64,22 @@ pub(super) type Column<'a, Row> = (Align, &'static str, &'a dyn Fn(&Row) -> Cell
 
 /// A table: the headings, and rows of cells.
 pub(super) struct Grid {
-    heads: Vec<(&'static str, Align)>,
+    heads: Vec<(String, Align)>,
     rows: Vec<Vec<Cell>>,
 }
 
 impl Grid {
     /// Returns the table of these rows.
     pub(super) fn of<Row>(rows: &[Row], columns: &[Column<'_, Row>]) -> Self {
-        let heads = columns.iter().map(|(align, head, _)| (*head, *align)).collect();
+        let heads = columns.iter().map(|(align, head, _)| ((*head).to_owned(), *align)).collect();
         let cells = |row| columns.iter().map(|(.., cell)| cell(row)).collect();
         Grid { heads, rows: rows.iter().map(cells).collect() }
     }
 
     /// Returns an empty table with headings, neighbours with one alignment together.
-    pub(super) fn new(groups: &[(Align, &[&'static str])]) -> Self {
-        let heads = groups.iter().flat_map(|(align, heads)| heads.iter().map(|head| (*head, *align)));
+    pub(super) fn new(groups: &[(Align, &[&str])]) -> Self {
+        let heads =
+            groups.iter().flat_map(|(align, heads)| heads.iter().map(|head| ((*head).to_owned(), *align)));
         Grid { heads: heads.collect(), rows: Vec::new() }
     }
 
@@ -97,7 +98,7 @@ impl Grid {
     pub(super) fn markdown(&self) -> String {
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
         let rule = |align| if align == Align::Right { "---:" } else { "---" };
-        let mut out = line(self.heads.iter().map(|(head, _)| (*head).to_owned()).collect());
+        let mut out = line(self.heads.iter().map(|(head, _)| head.clone()).collect());
         out.push_str(&line(self.heads.iter().map(|(_, align)| rule(*align).to_owned()).collect()));
         for row in &self.rows {
             out.push_str(&line(
@@ -112,10 +113,10 @@ impl Grid {
         let widths: Vec<usize> = (0..self.heads.len())
             .map(|i| {
                 let cells = self.rows.iter().filter_map(|row| row.get(i)).map(|cell| columns_of(&cell.0));
-                cells.fold(columns_of(self.heads[i].0), usize::max)
+                cells.fold(columns_of(&self.heads[i].0), usize::max)
             })
             .collect();
-        let heads: Vec<Cell> = self.heads.iter().map(|h| (h.0.to_owned(), Ink::Faint)).collect();
+        let heads: Vec<Cell> = self.heads.iter().map(|h| (h.0.clone(), Ink::Faint)).collect();
         let mut out = String::new();
         for row in std::iter::once(&heads).chain(&self.rows) {
             let mut line = String::new();

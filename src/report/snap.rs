@@ -5,7 +5,7 @@ use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain, verdict};
 use super::text::{COLUMNS, brief, exact, grouped, indented, significant, wrapped};
 use super::words::length_suffix;
-use crate::mechanism::Unit;
+use crate::mechanism::{Complex, CrankLinkage, MultiLoop, Unit};
 use crate::record::Candidate;
 use crate::synthesis::snap::{Length, Request, Snapped};
 
@@ -26,7 +26,7 @@ pub fn snap_text(
     let Some(after) = snapped.candidates.first() else { return String::new() };
     let unit = length_suffix(unit);
     let of_errors = if after.error.output.is_some() { "°" } else { &unit };
-    let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
+    let keys: Vec<String> = snapped.lengths.iter().map(|length| length.key()).collect();
     let text =
         format!("{} snapped to {}{unit}; the rest fitted again.", keys.join(", "), request.stock.words());
     let mut out = indented(&text);
@@ -91,7 +91,7 @@ fn dimensions(
     };
     let (from, to) = (&before.linkage, &after.linkage);
     for (length, value, was) in
-        Length::ALL.into_iter().filter_map(|length| Some((length, length.of(*to)?, length.of(*from)?)))
+        Length::all(to).into_iter().filter_map(|length| Some((length, length.of(*to)?, length.of(*from)?)))
     {
         let stock = snapped.lengths.contains(&length);
         let note = match request.fixed.get(length) {
@@ -101,7 +101,12 @@ fn dimensions(
         };
         // The ground follows from the pivots, up to rounding.
         let value = if stock { rounded(value) } else { value };
-        row(length.key(), was, value, stock, note);
+        row(&length.key(), was, value, stock, note);
+    }
+    for (name, was, is) in further_pivots(from, to) {
+        for (axis, was, is) in [("x", was.re, is.re), ("y", was.im, is.im)] {
+            row(&format!("{name}{axis}"), was, is, false, "");
+        }
     }
     for (name, of) in PARAMETERS[..4].iter().chain(&PLACES_OF_SLIDERS) {
         if let (Some(from), Some(to)) = (of(from), of(to)) {
@@ -115,13 +120,35 @@ fn dimensions(
     grid.render(colour)
 }
 
+/// Returns the fixed pivots beside A and B before and after, by name.
+fn further_pivots(from: &CrankLinkage, to: &CrankLinkage) -> Vec<(&'static str, Complex, Complex)> {
+    let pivots =
+        |linkage: &CrankLinkage| linkage.multi_loop().map(MultiLoop::named_pivots).unwrap_or_default();
+    let both = pivots(from).into_iter().zip(pivots(to)).skip(2);
+    both.map(|((name, was), (_, is))| (name, was, is)).collect()
+}
+
 /// Returns a stock length without the last digits that were lost because it is stored as two pivots.
 fn rounded(value: f64) -> f64 {
     format!("{value:.12e}").parse().unwrap_or(value)
 }
 
+/// Returns the lengths that have a column beside the figures: where there are many, those in which the answers differ.
+fn shown(snapped: &Snapped) -> Vec<Length> {
+    const MOST: usize = 6;
+    let differs = |length: &Length| {
+        let mut values = snapped.candidates.iter().map(|c| length.of(c.linkage).map(rounded));
+        let first = values.next();
+        values.any(|value| Some(value) != first)
+    };
+    let few = snapped.lengths.len() <= MOST;
+    snapped.lengths.iter().copied().filter(|length| few || differs(length)).take(MOST).collect()
+}
+
 fn figures(before: &Candidate, snapped: &Snapped, colour: Colour) -> String {
-    let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
+    let lengths = shown(snapped);
+    let keys: Vec<String> = lengths.iter().map(|length| length.key()).collect();
+    let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
     let has_angles = before.error.angle.is_some();
     let mut grid = Grid::new(&[
         (Left, &[""]),
@@ -147,7 +174,7 @@ fn figures(before: &Candidate, snapped: &Snapped, colour: Colour) -> String {
             plain(format!("{}°", significant(c.transmission_deg.worst, 4))),
             verdict(if c.accepted { "yes" } else { "no" }, c.accepted),
         ]);
-        for length in &snapped.lengths {
+        for length in &lengths {
             let value = length.of(c.linkage).unwrap_or(f64::NAN);
             cells.push(plain(if stock { exact(rounded(value)) } else { significant(value, DIGITS) }));
         }

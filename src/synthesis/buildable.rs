@@ -5,6 +5,9 @@
 //! linkage: from the answers found so far, then in rounds of fresh starts, until the best has been reached `HITS`
 //! times, `QUIET` rounds have brought nothing better, or the evaluations that the caller allows are used.
 //!
+//! Of six-bars and eight-bars, whose plates may not stack, no second search follows: those beyond the limits of a buildable linkage
+//! are fitted once more within them.
+//!
 //! A four-bar on the limit of its link ratio is nearly a linkage with a slider, the limit of longer and longer links. So
 //! these are searched for too, and one that is nearer to the target is the buildable candidate.
 
@@ -18,7 +21,8 @@ use super::multistart::{Fitted, LONG_FIT, RoundOutcome, fit_and_judge, judged, p
 use super::plan::Place;
 use super::starts::Starts;
 use super::states::SearchState;
-use super::{Context, Progress, sliders};
+use super::{Context, Progress, several_loops, sliders};
+use crate::judge::assess::assess_again;
 use crate::judge::costs::marginal;
 use crate::judge::loosen::judged_under;
 use crate::judge::rank::{chosen, compare};
@@ -29,6 +33,7 @@ use crate::record::{Candidate, Evaluations, WarningKind};
 use crate::task::Problem;
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::ProblemSpec;
+use rayon::prelude::*;
 
 /// Index of the first round of the second search: its random streams are apart from those of the main search.
 const FIRST_ROUND: u64 = 1 << 40;
@@ -52,7 +57,8 @@ pub struct Buildable {
 /// warnings or is not accepted.
 ///
 /// If the only warning is that the first lies on a limit of the problem, nothing is searched: a candidate that lies on
-/// none is taken if one was found.
+/// none is taken if one was found. Where the first has several loops, those that were found beyond the tightened
+/// limits are fitted once more within them.
 pub fn buildable(
     context: Context<'_>,
     ranked: &[Candidate],
@@ -65,7 +71,6 @@ pub fn buildable(
         return outcome;
     };
     let search = first.warnings.iter().any(is_serious);
-    outcome.searched = search;
     let mut best: Option<Candidate> = None;
     let mut offer = |candidate: &Candidate| {
         let better = || best.as_ref().is_none_or(|best| compare(problem, candidate, best).is_lt());
@@ -77,6 +82,15 @@ pub fn buildable(
         }
     };
     ranked.iter().chain(others).for_each(&mut offer);
+    let several_loops = first.linkage.multi_loop().is_some();
+    if search && several_loops && !context.stopped() {
+        let known: Vec<&Candidate> = ranked.iter().chain(others).collect();
+        let (found, evaluations) = refitted_known(context, &known, allowance);
+        (outcome.searched, outcome.evaluations) = (true, evaluations);
+        found.iter().for_each(&mut offer);
+    }
+    let search = search && !several_loops;
+    outcome.searched |= search;
     let place = Place::of(problem);
     let tight = Problem::new(tightened(problem.spec())).ok();
     if search
@@ -119,6 +133,29 @@ pub fn buildable(
     outcome
 }
 
+/// Fits those of the known six-bars and eight-bars that are beyond the limits of a buildable linkage once more within them, with at most `allowance` evaluations; returns the
+/// ends, judged under the problem itself, and the evaluations used.
+fn refitted_known(
+    context: Context<'_>,
+    known: &[&Candidate],
+    allowance: u64,
+) -> (Vec<Candidate>, Evaluations) {
+    let mut spec = context.problem.spec().clone();
+    tighten(&mut spec);
+    let Ok(tight) = Problem::new(spec) else { return (Vec::new(), Evaluations::default()) };
+    let is_beyond = |c: &&Candidate| {
+        let limits = [WarningKind::TransmissionAngle, WarningKind::LinkRatio];
+        warnings(context.problem, c).iter().any(|warning| limits.contains(&warning.kind))
+    };
+    let known: Vec<&Candidate> = known.iter().copied().filter(is_beyond).collect();
+    let each = allowance / known.len().max(1) as u64;
+    let fits: Vec<(Option<Candidate>, u64)> =
+        known.par_iter().map(|c| several_loops::refitted(context.of(&tight), c, each)).collect();
+    let used = fits.iter().map(|(_, used)| used).sum();
+    let found = fits.into_iter().filter_map(|(found, _)| assess_again(context.problem, &found?)).collect();
+    (found, context.cost(used))
+}
+
 /// Returns whether a candidate lies on the limit of its link ratio: links that long want to be a slider.
 fn lies_on_link_ratio(candidate: &Candidate) -> bool {
     candidate.warnings.iter().any(|warning| warning.key == RequirementKind::LinkRatio.name())
@@ -128,14 +165,20 @@ fn lies_on_link_ratio(candidate: &Candidate) -> bool {
 /// If any type is allowed, each of the proper ones is aimed at: the search then keeps off the boundaries between them.
 fn tightened(spec: &ProblemSpec) -> ProblemSpec {
     let mut spec = spec.clone();
+    tighten(&mut spec);
+    if spec.require.types.is_empty() {
+        let proper = LinkageType::ALL.into_iter().filter(|kind| *kind != LinkageType::ChangePoint);
+        spec.require.types.extend(proper);
+    }
+    spec
+}
+
+/// Tightens the limits on transmission angle and link ratio to those of a buildable linkage.
+fn tighten(spec: &mut ProblemSpec) {
     let require = &mut spec.require;
     let least = LEAST_TRANSMISSION_DEG + ABOVE;
     require.transmission_deg_min = Some(require.transmission_deg_min.map_or(least, |deg| deg.max(least)));
     require.link_ratio_max = require.link_ratio_max.min(GREATEST_LINK_RATIO);
-    if require.types.is_empty() {
-        require.types.extend(LinkageType::ALL.into_iter().filter(|kind| *kind != LinkageType::ChangePoint));
-    }
-    spec
 }
 
 /// Returns the problem with another limit of the transmission angle.

@@ -14,7 +14,7 @@
 //! | [`context`] | the inputs that every search is given, as one value |
 //! | [`continuation`] | the method `continuation`: all linkages through nine precision points, as candidates, alone or beside the approximate answers of `auto` |
 //! | [`driver`] | the loop of every search in batches: states saved, a batch run, progress reported, the stopping rule asked |
-//! | [`dyad_chains`] | search for dyad chains (six-bars, eight-bars) that draw a path with free timing |
+//! | [`dyad_chains`] | search for dyad chains (six-bars, eight-bars) that draw a path, with free or prescribed timing |
 //! | [`dyads`] | Burmester's problem: the dyads that guide a body through given poses, exactly or nearly, and the linkages of two of them |
 //! | `ellipse` | the ellipse through the points of a closed target that is nearly one |
 //! | [`errors_without`] | the error that is left without each requirement that is active at the best candidate |

@@ -1,9 +1,10 @@
-//! Search for six-bars and eight-bars for a path of free timing: the limits of a problem as those of [`dyad_chains`](super::dyad_chains),
+//! Search for six-bars and eight-bars for a path: the limits of a problem as those of [`dyad_chains`](super::dyad_chains),
 //! and its answers as judged candidates.
 
 use super::driver::Found;
 use super::dyad_chains::{
-    DyadChainAnswer, DyadChainLimits, DyadChainOutcome, DyadChainProgress, Request, Watch, refit, search,
+    DyadChainAnswer, DyadChainLimits, DyadChainOutcome, DyadChainProgress, DyadChainTiming, Held, Request,
+    Watch, refit, run, search,
 };
 use super::{Context, Progress};
 use crate::judge::assess::{assess, assess_again};
@@ -12,9 +13,9 @@ use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{AssemblyMode, Complex, DyadChainKind, LinkageKind, MultiLoop};
 use crate::record::{Candidate, Reason, Repeats};
-use crate::task::Problem;
 use crate::task::spec::{DesignSpec, DirectionPolicy, Limits};
 use crate::task::without_several_loops::WithoutSeveralLoops;
+use crate::task::{AngleOffset, Problem, Timing};
 
 /// The name of the phase.
 const PHASE: &str = "least-squares";
@@ -25,7 +26,9 @@ const OFFERED: u64 = 120_000;
 /// Points of a path below which none is offered: a linkage of many parameters passes a few points anyhow.
 const LEAST_POINTS: usize = 20;
 /// Trial steps of a fit under tightened limits.
-const REFIT_STEPS: usize = 60;
+const REFIT_STEPS: u64 = 60;
+/// Greatest length of a linkage with prescribed timing where none is asked for, in sizes: as the default bounds of a four-bar's.
+const LONGEST_TIMED: f64 = 5.0;
 /// The most answers that are judged, for each that is listed.
 const JUDGED: usize = 3;
 
@@ -66,16 +69,30 @@ pub fn beside_four_bars(context: Context<'_>) -> Option<Candidate> {
 /// Fits a candidate of several loops under the limits of a problem with at most so many evaluations; returns the end, judged, and the
 /// evaluations used.
 pub(super) fn refitted(context: Context<'_>, from: &Candidate, evaluations: u64) -> (Option<Candidate>, u64) {
+    refitted_holding(context, from, &[], evaluations.min(REFIT_STEPS))
+}
+
+/// As [`refitted`], with dimensions at given values, up to the rounding of a fit.
+pub(super) fn refitted_holding(
+    context: Context<'_>,
+    from: &Candidate,
+    held: &[Held],
+    evaluations: u64,
+) -> (Option<Candidate>, u64) {
     let problem = context.problem;
     let chain = from.linkage.multi_loop().and_then(MultiLoop::to_dyad_chain);
     let Some((chain, kind)) = chain.zip(from.linkage.kind().dyads()) else { return (None, 0) };
     let (points, kinds) = (points(problem, false), DyadChainKind::all(kind));
-    let request = Request { points: &points, ..request(problem, &kinds, evaluations) };
+    let request = Request {
+        points: &points,
+        timing: timing(problem, points.len()),
+        ..request(problem, &kinds, evaluations)
+    };
     let ground = chain.ground_angle();
     let phases: Vec<f64> =
         from.crank_deg.iter().take(points.len()).map(|deg| deg.to_radians() - ground).collect();
-    let steps = usize::try_from(evaluations).unwrap_or(usize::MAX).min(REFIT_STEPS);
-    match refit(&request, &chain, &phases, steps) {
+    let steps = usize::try_from(evaluations).unwrap_or(usize::MAX);
+    match refit(&request, &chain, &phases, held, steps) {
         Some((answer, used)) => (judged(problem, &answer, false), used),
         None => (None, 0),
     }
@@ -85,6 +102,7 @@ pub(super) fn refitted(context: Context<'_>, from: &Candidate, evaluations: u64)
 fn request<'a>(problem: &Problem, kinds: &'a [DyadChainKind], evaluations: u64) -> Request<'a> {
     Request {
         points: &[],
+        timing: None,
         closed: problem.task().closed(),
         counter_clockwise: problem.spec().require.direction != DirectionPolicy::Any,
         kinds,
@@ -101,6 +119,18 @@ fn request<'a>(problem: &Problem, kinds: &'a [DyadChainKind], evaluations: u64) 
 fn judged(problem: &Problem, answer: &DyadChainAnswer, reversed: bool) -> Option<Candidate> {
     let linkage = MultiLoop::of_dyad_chain(&answer.chain).ok()?;
     let ground = answer.chain.ground_angle();
+    if let Timing::Prescribed { crank_angles, offset } = problem.task().timing() {
+        let run = run(&answer.phases, crank_angles);
+        let base = match offset {
+            AngleOffset::Free => wrapped(answer.phases[0] + ground - run * crank_angles[0]).to_degrees(),
+            AngleOffset::Fixed => 0.0,
+            AngleOffset::Ground => ground.to_degrees(),
+        };
+        let written = &problem.spec().task.timing.as_ref()?.crank_deg;
+        let crank_deg: Vec<f64> = written.iter().map(|deg| base + run * deg).collect();
+        let t1_at = vec![linkage.assembly(); crank_deg.len()];
+        return assess(problem, linkage, &crank_deg, &t1_at);
+    }
     let mut angles: Vec<f64> = answer.phases.iter().map(|phase| wrapped(phase + ground)).collect();
     if reversed {
         angles.reverse();
@@ -123,9 +153,12 @@ fn search_until(context: Context<'_>, kind: LinkageKind, limit: u64, enough: f64
     let problem = context.problem;
     let Some(dyads) = kind.dyads() else { return Found::nothing() };
     let kinds = DyadChainKind::all(dyads);
-    let clockwise = problem.spec().require.direction == DirectionPolicy::Cw;
+    // Of prescribed timing the runs say the sense.
+    let clockwise =
+        problem.spec().require.direction == DirectionPolicy::Cw && *problem.task().timing() == Timing::Free;
     let points = points(problem, clockwise);
-    let request = Request { points: &points, enough, ..request(problem, &kinds, limit) };
+    let timing = timing(problem, points.len());
+    let request = Request { points: &points, timing, enough, ..request(problem, &kinds, limit) };
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().dyad_chains.get(&kind).cloned());
     let observer = |now: &DyadChainProgress| {
         let sum_sq = now.best_rms * now.best_rms * points.len() as f64;
@@ -189,12 +222,25 @@ fn found(context: Context<'_>, outcome: &DyadChainOutcome, clockwise: bool) -> F
 /// clockwise.
 fn points(problem: &Problem, reversed: bool) -> Vec<Complex> {
     let task = problem.task();
-    let count = task.len() - usize::from(task.repeats_first());
+    // Crank angles say how a point that repeats the first is reached.
+    let repeats = task.repeats_first() && *task.timing() == Timing::Free;
+    let count = task.len() - usize::from(repeats);
     let mut points = task.points()[..count].to_vec();
     if reversed {
         points.reverse();
     }
     points
+}
+
+/// Returns the crank angles of a problem with prescribed timing at its first so many points.
+fn timing(problem: &Problem, count: usize) -> Option<DyadChainTiming<'_>> {
+    match problem.task().timing() {
+        Timing::Free => None,
+        Timing::Prescribed { crank_angles, offset } => {
+            let angles = &crank_angles[..count];
+            Some(DyadChainTiming { angles, offset: *offset, runs: problem.directions() })
+        }
+    }
 }
 
 /// Returns the limits of a problem.
@@ -216,7 +262,10 @@ fn limits(problem: &Problem) -> DyadChainLimits {
     };
     DyadChainLimits {
         transmission_min: require.transmission_deg_min.unwrap_or(0.0).to_radians(),
-        longest_max: require.longest_max.unwrap_or(f64::INFINITY),
+        longest_max: require.longest_max.unwrap_or(match problem.task().timing() {
+            Timing::Free => f64::INFINITY,
+            Timing::Prescribed { .. } => LONGEST_TIMED * problem.task().size(),
+        }),
         link_ratio_max: require.link_ratio_max,
         footprint_in: require
             .footprint_in

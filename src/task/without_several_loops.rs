@@ -3,15 +3,15 @@
 use super::requirement::RequireSpec;
 use super::spec::{Method, Objective, OrderPolicy, SolveSpec, TaskSpec};
 
-/// The reason why six-bars and eight-bars are not searched for: they draw paths of free timing, by least squares alone.
+/// The reason why six-bars and eight-bars are not searched for: they draw paths of free or prescribed timing, by least squares alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WithoutSeveralLoops {
     /// A motion or a function.
     #[error("is searched for to draw a path, not for poses or a function")]
     NoPath,
-    /// Some or all crank angles are given.
-    #[error("is searched for with free timing alone")]
-    Timed,
+    /// Some crank angles are given, others are free.
+    #[error("is searched for with all crank angles given or with none")]
+    PartlyTimed,
     /// A target is to be met exactly.
     #[error("is not searched for with exact targets")]
     ExactTarget,
@@ -37,8 +37,8 @@ impl WithoutSeveralLoops {
     pub fn of(task: &TaskSpec, solve: &SolveSpec, require: &RequireSpec) -> Option<WithoutSeveralLoops> {
         if task.body.is_some() || task.output.is_some() {
             Some(WithoutSeveralLoops::NoPath)
-        } else if task.timing.is_some() {
-            Some(WithoutSeveralLoops::Timed)
+        } else if task.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
+            Some(WithoutSeveralLoops::PartlyTimed)
         } else if task.tolerance.iter().flatten().any(|tolerance| *tolerance == 0.0) {
             Some(WithoutSeveralLoops::ExactTarget)
         } else if task.weight.iter().flatten().any(|weight| *weight != 1.0) {

@@ -3,7 +3,7 @@
 use crate::dyad_chains::drawn;
 use crate::slider_plates::{layered, positions};
 use linkwright::internals::judge::practicality::clearance::pivot_distances;
-use linkwright::internals::judge::practicality::layers::Layering;
+use linkwright::internals::judge::practicality::layers::{Layering, can_be_stacked, layering};
 use linkwright::internals::judge::practicality::sweep::Stretch;
 use linkwright::internals::judge::practicality::{Build, Joint, Sweep};
 use linkwright::internals::mechanism::plates::{Link, Parts};
@@ -119,6 +119,10 @@ fn distances_of_several_loops_are_bounded_and_near_the_least_of_a_fine_sweep() {
         assert_eq!(pairs, links * (links - 1) / 2, "every two plates are joined by a pin or free");
         stacked += usize::from(found.stack.is_some());
         nothing_crosses(&found);
+        // As quickly as it can be decided, with the same holes.
+        let build = Build::new(0.01 * linkage.longest(), 0.01 * linkage.longest());
+        let decided = can_be_stacked(&sweep, build).expect("it closes");
+        assert_eq!(decided, layering(&sweep, build).expect("it closes").stack.is_some());
     }
     assert!(stacked > 5, "{stacked} of 20 can be stacked");
 }

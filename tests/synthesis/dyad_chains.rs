@@ -4,8 +4,10 @@ use crate::common::root;
 use linkwright::internals::mechanism::chain::{Attachment, Stage};
 use linkwright::internals::mechanism::{Chain, Complex, DyadChainKind, Mechanism};
 use linkwright::internals::synthesis::dyad_chains::{
-    DyadChainAnswer, DyadChainLimits, DyadChainOutcome, DyadChainState, Request, Watch, search,
+    DyadChainAnswer, DyadChainLimits, DyadChainOutcome, DyadChainState, DyadChainTiming, Request, Watch,
+    search,
 };
+use linkwright::internals::task::AngleOffset;
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Mutex;
@@ -49,6 +51,7 @@ fn request<'a>(points: &'a [Complex], closed: bool, evaluations: u64) -> Request
     Request {
         points,
         closed,
+        timing: None,
         kinds: &DyadChainKind::SIX_BARS,
         counter_clockwise: false,
         limits: limits(points),
@@ -273,4 +276,54 @@ fn requests_that_cannot_be_used_have_no_outcome() {
     ] {
         assert!(search(&refused, Watch::silent(), None).is_none());
     }
+}
+
+/// The points of a chain at crank angles `offset + run angles[j]`, from where these count.
+fn at_angles(answer: &DyadChainAnswer, angles: &[f64], (offset, run): (f64, f64)) -> Vec<Complex> {
+    let (of, ground) = (answer.chain.proportions(), answer.chain.ground_angle());
+    angles.iter().map(|angle| answer.chain.point(&of, offset + run * angle - ground)).collect()
+}
+
+#[test]
+fn a_six_bar_comes_back_from_points_of_its_own_at_given_crank_angles() {
+    let target = shape("letter-D");
+    let drawn = found(&request(&target, true, ONE_ISLAND));
+    let angles: Vec<f64> = (0..24).map(|i| TAU * f64::from(i) / 24.0).collect();
+    let mut exact = 0;
+    for (i, of) in drawn.answers.iter().take(4).enumerate() {
+        let ground = of.chain.ground_angle();
+        for (offset, from) in
+            [(AngleOffset::Free, 0.7), (AngleOffset::Fixed, 0.0), (AngleOffset::Ground, ground)]
+        {
+            // Every other one with the crank turning clockwise.
+            let run = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let points = at_angles(of, &angles, (from, run));
+            let written: Vec<f64> = angles.iter().map(|angle| run * angle).collect();
+            let timing = DyadChainTiming { angles: &written, offset, runs: &[1.0] };
+            let limits = DyadChainLimits { transmission_min: 0.5, ..limits(&target) };
+            let asked = Request {
+                timing: Some(timing),
+                limits,
+                answers: 2,
+                enough: 1e-9,
+                ..request(&points, true, 80_000)
+            };
+            let outcome = found(&asked);
+            let best = &outcome.answers[0];
+            assert!(best.accepted && best.rms < 0.05 * extent(&points).0, "{} {offset:?}", best.rms);
+            // At the angles that were given, in the sense that was given.
+            let own = best.chain.ground_angle();
+            let base = match offset {
+                AngleOffset::Free => best.phases[0] + own,
+                AngleOffset::Fixed => 0.0,
+                AngleOffset::Ground => own,
+            };
+            let there = at_angles(best, &written, (base, 1.0));
+            let apart = there.iter().zip(&points).map(|(p, t)| (p - t).norm_sqr()).sum::<f64>();
+            let rms = (apart / points.len() as f64).sqrt();
+            assert!((rms - best.rms).abs() < 1e-9, "{rms} {} {offset:?}", best.rms);
+            exact += usize::from(best.rms < 1e-6 * extent(&points).0);
+        }
+    }
+    assert!(exact >= 9, "{exact} of 12 come back");
 }

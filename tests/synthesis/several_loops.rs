@@ -3,14 +3,18 @@
 use crate::common::{bytes, load, parse, root, run_on};
 use linkwright::internals::files::linkage_file::parse_crank_linkage;
 use linkwright::internals::files::problem_file;
+use linkwright::internals::judge::certificate::Subject;
+use linkwright::internals::judge::practicality::layers::layering;
+use linkwright::internals::judge::practicality::{Build, Sweep};
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::mechanism::{CrankLinkage, LinkageKind, MultiLoop};
-use linkwright::internals::record::{Pick, Record};
+use linkwright::internals::record::{Candidate, Pick, Record, WarningKind};
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::html::report_html;
 use linkwright::internals::report::svg::candidate_svg;
 use linkwright::internals::report::table::candidates_table;
-use linkwright::internals::task::Defect;
+use linkwright::internals::synthesis::snap::Length;
+use linkwright::internals::task::{Defect, Problem};
 use std::f64::consts::TAU;
 
 /// A problem of the heart, closed, with these lines after the points.
@@ -176,4 +180,98 @@ fn a_shipped_problem_of_a_letter_is_met() {
     let best = &record.candidates[0];
     assert!(best.accepted && best.error.rms_over_size < 0.01, "{}", best.error.rms_over_size);
     assert!(matches!(best.linkage, CrankLinkage::MultiLoop(_)));
+}
+
+#[test]
+fn plates_that_cannot_be_stacked_are_told_and_the_best_that_can_is_named() {
+    let stacks = |candidate: &Candidate| !candidate.warnings.iter().any(|w| w.kind == WarningKind::Stacking);
+    let (mut can, mut cannot) = (0, 0);
+    for shape in ["letter-K", "arrow"] {
+        let file = root().join(format!("problems/shapes/{shape}.toml"));
+        let record = run_on(2, load(&file, &[("solve.evaluations", "40000")]));
+        let problem = Problem::new(record.problem.resolved.clone()).expect("a problem");
+        let pick = record.pick(Pick::Buildable).expect("one that can be stacked");
+        assert!(!stacks(&record.candidates[0]) && pick.accepted && pick.warnings.is_empty(), "{shape}");
+        for candidate in record.candidates.iter().chain([pick]) {
+            let sweep = Sweep::of_candidate(&problem, candidate).expect("it closes");
+            let hole = Build::usual_hole_of(&sweep, None).expect("there is room");
+            let found = layering(&sweep, Build::new(hole, hole)).expect("it closes");
+            assert_eq!(stacks(candidate), found.stack.is_some(), "{shape} {}", candidate.rank);
+            *(if stacks(candidate) { &mut can } else { &mut cannot }) += 1;
+        }
+        let table = candidates_table(&record, Colour::Never);
+        assert!(table.contains("cannot be stacked") && table.contains("buildable"), "{table}");
+        assert_eq!(verify(&record).expect("a record"), []);
+    }
+    assert!(can > 1 && cannot > 5, "{can} can, {cannot} cannot");
+}
+
+#[test]
+fn a_stroke_with_a_dwell_is_drawn_at_the_given_crank_angles() {
+    let more = [("solve.evaluations", "60000"), ("design.mechanism", "[\"six-bar\"]")];
+    let file = root().join("problems/examples/dwell-stroke.toml");
+    let record = run_on(2, load(&file, &more));
+    let best = &record.candidates[0];
+    assert!(best.accepted && best.error.max <= 4.0, "{}", best.error.max);
+    assert!(best.crank_deg.windows(2).all(|pair| ((pair[1] - pair[0]).abs() - 5.0).abs() < 1e-9));
+    assert_eq!(verify(&record).expect("a record"), []);
+    // The errors that are told are those at these angles.
+    let (linkage, task) = (multi_loop(&record, 0), &record.problem.resolved.task);
+    let points = &task.points;
+    let mut sum_sq = 0.0;
+    for (deg, [x, y]) in best.crank_deg.iter().zip(points.iter()) {
+        let p = linkage.point_at(deg.to_radians()).expect("it turns fully");
+        sum_sq += (p.re - x).powi(2) + (p.im - y).powi(2);
+    }
+    let rms = (sum_sq / points.len() as f64).sqrt();
+    assert!((rms - best.error.rms).abs() < 1e-9, "{rms} {}", best.error.rms);
+    assert_eq!(bytes(&record), bytes(&run_on(1, load(&file, &more))));
+}
+
+/// A problem of Watt's six-bar: its points at these crank angles from the first, mirrored if asked for.
+fn of_watts(angles: &[f64], closed: bool, mirrored: bool, require: &str) -> String {
+    let file = root().join("problems/linkages/watt-six-bar.toml");
+    let text = std::fs::read_to_string(file).expect("it is there");
+    let read = parse_crank_linkage("watt-six-bar.toml", &text).expect("a linkage");
+    let linkage = *read.linkage.multi_loop().expect("a six-bar");
+    let at = |deg: &f64| {
+        let p = linkage.point_at((40.0 + deg).to_radians()).expect("it turns fully");
+        format!("[{}, {}]", p.re, if mirrored { -p.im } else { p.im })
+    };
+    let points: Vec<String> = angles.iter().map(at).collect();
+    let written: Vec<String> = angles.iter().map(f64::to_string).collect();
+    format!(
+        "format = 1\n[task.path]\npoints = [{}]\nclosed = {closed}\n[task.path.timing]\ncrank_deg = [{}]\n[design]\n\
+         {SIX_BAR}\n[require]\n{require}\n[solve]\nevaluations = 80000\n",
+        points.join(", "),
+        written.join(", ")
+    )
+}
+
+#[test]
+fn a_crank_that_goes_to_and_fro_and_ends_where_it_began_is_timed_at_every_point() {
+    let there: Vec<f64> = (0..12).map(|i| 14.0 * f64::from(i)).collect();
+    let angles: Vec<f64> = there.iter().chain(there.iter().rev().skip(1)).copied().collect();
+    for mirrored in [false, true] {
+        let require = "longest_max = 200\nfootprint_in = [-60, -120, 130, 120]";
+        let record = run_on(2, parse(&of_watts(&angles, false, mirrored, require)));
+        let best = &record.candidates[0];
+        assert_eq!(best.crank_deg.len(), angles.len());
+        assert!(best.error.rms < 1e-3, "{} {mirrored}", best.error.rms);
+        assert_eq!(verify(&record).expect("a record"), []);
+        // A timed record is snapped as any other, without the bounds of a four-bar's lengths.
+        let problem = Problem::new(record.problem.resolved.clone()).expect("a problem");
+        let length = Length::named("X2F2").expect("a length");
+        let limits = length.limits(&problem.spec().design, &best.linkage);
+        assert_eq!((limits.0, limits.1), (0.0, f64::INFINITY));
+        assert_eq!(Length::Ground.limits(&problem.spec().design, &best.linkage), limits);
+    }
+}
+
+#[test]
+fn what_is_proved_of_four_bars_is_not_said_of_a_six_bar() {
+    let angles: Vec<f64> = (0..12).map(|i| 30.0 * f64::from(i)).collect();
+    let record = run_on(2, parse(&of_watts(&angles, true, false, "longest_max = 200")));
+    let refused = Subject::new(&record, 1e-3).expect_err("a six-bar");
+    assert!(refused.to_string().contains("a six-bar: the proof covers four-bars"), "{refused}");
 }

@@ -1,5 +1,6 @@
 //! Commands and options, with their help texts and the checks of their values.
 
+use crate::app::snapping::KEPT;
 use crate::files::schema::SchemaKind;
 use crate::mechanism::MAX_MAGNITUDE;
 use crate::mechanism::analysis::PositionMethod;
@@ -389,13 +390,13 @@ pub struct Snap {
     /// The stock: the lengths in this text file, one a line or separated by commas
     #[arg(long, value_name = "FILE")]
     pub pitches: Option<PathBuf>,
-    /// Which hole distances are snapped
-    #[arg(long, value_name = "KEY,..", value_delimiter = ',', default_value = "ground,a,b,c,d,e", value_parser = length)]
-    pub snap: Vec<Length>,
-    /// What stays exactly as it is: ground, a, b, c, d, e, A, B, ground_angle_deg
+    /// Which hole distances are snapped: ground, a, b, c, d, e, of a six-bar also two joints, such as X2F2 [default: all]
+    #[arg(long, value_name = "KEY,..", value_delimiter = ',', value_parser = length)]
+    pub snap: Option<Vec<Length>>,
+    /// What stays exactly as it is: hole distances, A, B, ground_angle_deg, of a six-bar also its third pivot, such as Y2
     #[arg(long, value_name = "KEY,..", value_delimiter = ',', value_parser = kept)]
     pub keep: Vec<String>,
-    /// Put a dimension at a value of its own: ground, a, b, c, d, e, ground_angle_deg
+    /// Put a dimension at a value of its own: a hole distance, ground_angle_deg
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = dimension)]
     pub set: Vec<(String, f64)>,
     /// Where the result goes: a folder, or FILE.toml for the best linkage alone [default: results/NAME-snapped]
@@ -555,11 +556,15 @@ enum ValueError {
     NotAPair(&'static str),
     #[error("what can be set is certify.time_limit_s")]
     NotOfCertify,
-    #[error("a hole distance is one of ground, a, b, c, d, e")]
+    #[error("a hole distance is one of ground, a, b, c, d, e, or of a six-bar two joints, such as X2F2")]
     NotALength,
-    #[error("what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg")]
+    #[error(
+        "what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg, or of a six-bar two joints or a third pivot, such as X2F2 or Y2"
+    )]
     NotKept,
-    #[error("what can be set is one of ground, a, b, c, d, e, ground_angle_deg")]
+    #[error(
+        "what can be set is one of ground, a, b, c, d, e, ground_angle_deg, or of a six-bar two joints, such as X2F2"
+    )]
     NotADimension,
 }
 
@@ -591,7 +596,7 @@ fn length(text: &str) -> Result<Length, ValueError> {
 
 fn kept(text: &str) -> Result<String, ValueError> {
     let key = text.trim();
-    let known = Length::named(key).is_some() || ["A", "B", "ground_angle_deg"].contains(&key);
+    let known = Length::named(key).is_some() || KEPT.contains(&key);
     known.then(|| key.into()).ok_or(ValueError::NotKept)
 }
 

@@ -7,7 +7,7 @@ use super::result;
 use super::{Ended, build, interrupt, refuse, refuse_at, terminal};
 use crate::app::job::files::{Timing, files};
 use crate::app::job::folder::ResultsFolder;
-use crate::app::snapping::{NoSubject, Subject, fixed, pitches};
+use crate::app::snapping::{NoSubject, Subject, fixed, pitches, to_snap};
 use crate::files::generator::FileKind;
 use crate::files::linkage_file;
 use crate::files::name;
@@ -37,7 +37,7 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     }
     let request = Request {
         stock,
-        lengths: options.snap.clone(),
+        lengths: to_snap(&subject.candidate.linkage, options.snap.as_deref()).map_err(refuse)?,
         fixed: fixed(&subject.candidate.linkage, &options.keep, &options.set).map_err(refuse)?,
         wanted: subject.problem.spec().solve.candidates,
     };

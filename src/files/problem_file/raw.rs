@@ -186,8 +186,8 @@ pub(crate) struct RawTiming {
 #[schemars(rename = "Design")]
 pub(crate) struct RawDesign {
     /// The kinds of linkages to search for, ranked together: one name or a list of four-bar (default), slider-crank and
-    /// inverted-slider-crank, six-bar, eight-bar. Six-bars and eight-bars draw paths of free timing; where a tolerance is asked for
-    /// they are searched for only if no simpler kind of the list meets it.
+    /// inverted-slider-crank, six-bar, eight-bar. Six-bars and eight-bars draw paths, of free timing or with every
+    /// crank angle given; where a tolerance is asked for they are searched for only if no simpler kind of the list meets it.
     pub mechanism: Option<OneOrMore<LinkageKind>>,
     /// The fixed pivot of the crank: [x, y], each a number or [min, max]; where silent, within 5 sizes of the target.
     #[serde(rename = "A")]

@@ -22,6 +22,12 @@ pub enum NoCertificate {
     /// The result has no candidate to compare with.
     #[error("the result has no candidate")]
     NoCandidate,
+    /// The best linkage has several loops.
+    #[error("no certificate is available for the first candidate, a {kind}: the proof covers four-bars")]
+    SeveralLoops {
+        /// Its kind.
+        kind: &'static str,
+    },
     /// The timing is free: each point is met at the nearest crank angle.
     #[error("no certificate is available for free timing: give the points crank angles (task.path.timing)")]
     FreeTiming,
@@ -91,7 +97,11 @@ impl Subject {
             return Err(NoCertificate::Gap { gap });
         }
         let spec = &record.problem.resolved;
-        let best = record.candidates.first().ok_or(NoCertificate::NoCandidate)?.error.sum_sq;
+        let first = record.candidates.first().ok_or(NoCertificate::NoCandidate)?;
+        if first.linkage.multi_loop().is_some() {
+            return Err(NoCertificate::SeveralLoops { kind: first.linkage.kind().name() });
+        }
+        let best = first.error.sum_sq;
         let path = &spec.task;
         if path.body.is_some() {
             return Err(NoCertificate::Motion);

@@ -1,6 +1,6 @@
 //! Clearances: least distances between plates, pins and joints over a motion.
 
-use super::closest::{Closest, closest};
+use super::closest::{Closest, Until, closest};
 use super::sweep::{Position, Positions, Reach, Sweep};
 pub use crate::mechanism::plates::Joint;
 use crate::mechanism::plates::{Guide, Link, Parts, Plate, Sizes, parts};
@@ -132,6 +132,7 @@ pub struct Workpieces<'a> {
     build: Build,
     parts: Parts,
     plates: Vec<Plate>,
+    until: Until,
 }
 
 impl<'a> Workpieces<'a> {
@@ -139,7 +140,13 @@ impl<'a> Workpieces<'a> {
     pub fn new(sweep: &'a Sweep, build: Build) -> Option<Self> {
         let parts = build.parts(sweep)?;
         let plates = parts.plates(|link| build.radius_of(link));
-        Some(Workpieces { positions: Positions::of(sweep), build, parts, plates })
+        Some(Workpieces { positions: Positions::of(sweep), build, parts, plates, until: Until::Proved })
+    }
+
+    /// Returns the same, whose least distances are proved only until it is decided whether they are above zero.
+    #[must_use]
+    pub fn decided(self) -> Self {
+        Workpieces { until: Until::Decided, ..self }
     }
 
     /// Returns the parts.
@@ -180,14 +187,14 @@ impl<'a> Workpieces<'a> {
     pub fn between_plates(&self, one: Link, other: Link) -> Option<Closest> {
         let moves =
             |reach: &Reach| plate_moves(self.plate(one), reach) + plate_moves(self.plate(other), reach);
-        closest(&self.positions, |at| self.plates_in(one, other, at), moves)
+        closest(&self.positions, |at| self.plates_in(one, other, at), moves, self.until)
     }
 
     /// Computes the least distance between a pin and a plate over the motion.
     pub fn pin_to_plate(&self, pin: Joint, plate: Link) -> Option<Closest> {
         let guide = self.parts.guide();
         let moves = |reach: &Reach| joint_moves(pin, reach, guide) + plate_moves(self.plate(plate), reach);
-        closest(&self.positions, |at| self.pin_and_plate_in(pin, plate, at), moves)
+        closest(&self.positions, |at| self.pin_and_plate_in(pin, plate, at), moves, self.until)
     }
 
     /// Computes the least distance between the surfaces of two pins over the motion.
@@ -196,7 +203,7 @@ impl<'a> Workpieces<'a> {
         let guide = self.parts.guide();
         let moves = |reach: &Reach| joint_moves(one, reach, guide) + joint_moves(other, reach, guide);
         let radii = self.build.radius_at(one) + self.build.radius_at(other);
-        closest(&self.positions, |at| apart(at) - radii, moves)
+        closest(&self.positions, |at| apart(at) - radii, moves, self.until)
     }
 }
 
@@ -231,7 +238,7 @@ pub fn pivot_distances(sweep: &Sweep) -> Option<Vec<PivotDistance>> {
                 true => 0.0,
                 false => joint_moves(one, reach, None) + joint_moves(other, reach, None),
             };
-            let closest = closest(&positions, apart, moves)?;
+            let closest = closest(&positions, apart, moves, Until::Proved)?;
             distances.push(PivotDistance { between: [one.name(), other.name()], closest, fixed });
         }
     }

@@ -33,6 +33,15 @@ pub struct Closest {
     pub bound: f64,
 }
 
+/// How far a least distance is proved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// To within [`MARGIN`] of the longest link or [`RELATIVE`] of itself.
+    Proved,
+    /// Until it is known whether it is above zero: a distance below [`MARGIN`] of the longest link counts as none.
+    Decided,
+}
+
 /// A stretch with its bound, the least bound first in a heap.
 struct Piece {
     bound: f64,
@@ -59,8 +68,7 @@ impl Ord for Piece {
     }
 }
 
-/// Finds the least value of `measure` over a motion, proved to within [`MARGIN`] of the longest link or [`RELATIVE`] of
-/// itself.
+/// Finds the least value of `measure` over a motion, proved as far as `until` says; a bound above zero is proved in either case.
 ///
 /// `moves` bounds the change of `measure` within a stretch by the joints' displacements. `None` if the loop is open in
 /// the motion, or the motion is empty.
@@ -68,6 +76,7 @@ pub fn closest(
     positions: &Positions<'_>,
     measure: impl Fn(&Position) -> f64,
     moves: impl Fn(&Reach) -> f64,
+    until: Until,
 ) -> Option<Closest> {
     let sweep = positions.sweep;
     let margin = MARGIN * sweep.linkage.longest_link();
@@ -95,6 +104,12 @@ pub fn closest(
     let mut evaluations = FIRST * sweep.stretches.len();
     while let Some(piece) = heap.pop() {
         let found = best?;
+        if until == Until::Decided && found.value <= margin {
+            return Some(Closest { bound: f64::NEG_INFINITY, ..found });
+        }
+        if until == Until::Decided && piece.bound > 0.0 {
+            return Some(Closest { bound: piece.bound, ..found });
+        }
         let Stretch { from, to, .. } = piece.stretch;
         let middle = piece.stretch.middle();
         let indivisible = middle <= from || middle >= to;

@@ -16,6 +16,7 @@ use super::clearance::{Build, Joint, Workpieces};
 use super::closest::Closest;
 use super::sweep::Sweep;
 use crate::mechanism::plates::{Link, Pin};
+use std::ops::ControlFlow;
 
 /// The pairs of plates of a four-bar that no pin joins.
 pub const FREE_PAIRS: [[Link; 2]; 2] = [[Link::Crank, Link::Follower], [Link::Coupler, Link::Ground]];
@@ -98,30 +99,46 @@ pub fn clear(closest: &Closest) -> bool {
 /// Computes the stacking of the fewest layers without crossings over the whole motion; `None` if the loop is open in
 /// the motion.
 pub fn layering(sweep: &Sweep, build: Build) -> Option<Layering> {
-    let pieces = Workpieces::new(sweep, build)?;
-    let parts = pieces.parts();
-    let links = parts.links();
-    let all_pins = parts.pins();
-    let mut free_pairs = Vec::new();
-    for plates in self::free_pairs(&links, &all_pins) {
-        free_pairs.push(PlatePair { plates, closest: pieces.between_plates(plates[0], plates[1])? });
-    }
-    let mut pins_plates = Vec::new();
-    let mut pins = Vec::new();
-    for (i, Pin { joint: pin, joins }) in all_pins.iter().copied().enumerate() {
-        let strangers =
-            links.iter().filter(|link| !joins.contains(link) && !parts.stands_in_slot(pin, **link));
-        for plate in strangers.copied() {
-            pins_plates.push(PinPlate { pin, plate, closest: pieces.pin_to_plate(pin, plate)? });
-        }
-        for other in &all_pins[i + 1..] {
-            pins.push(([pin, other.joint], pieces.between_pins(pin, other.joint)?));
-        }
-    }
-    let mut layering =
-        Layering { links, traced: parts.traced(), all_pins, free_pairs, pins_plates, pins, stack: None };
+    let mut layering = Layering::of(&Workpieces::new(sweep, build)?)?;
     layering.stack = layering.best();
     Some(layering)
+}
+
+/// Returns whether there is a stacking without crossings over the whole motion, in a fraction of the time of [`layering`]: of the
+/// distances it is only decided whether parts are clear, and parts nearer than [`MARGIN`](super::closest::MARGIN) of the longest
+/// link count as crossing. `None` if the loop is open in the motion.
+pub fn can_be_stacked(sweep: &Sweep, build: Build) -> Option<bool> {
+    let layering = Layering::of(&Workpieces::new(sweep, build)?.decided())?;
+    // A layer without a plate is left out.
+    let count = layering.links.len();
+    let visited = Crossings::of(&layering).each_of(count, &mut Vec::new(), &mut |_| ControlFlow::Break(()));
+    Some(visited.is_break())
+}
+
+impl Layering {
+    /// Computes the distances that decide the layers, without a stacking.
+    fn of(pieces: &Workpieces<'_>) -> Option<Self> {
+        let parts = pieces.parts();
+        let links = parts.links();
+        let all_pins = parts.pins();
+        let mut free_pairs = Vec::new();
+        for plates in self::free_pairs(&links, &all_pins) {
+            free_pairs.push(PlatePair { plates, closest: pieces.between_plates(plates[0], plates[1])? });
+        }
+        let mut pins_plates = Vec::new();
+        let mut pins = Vec::new();
+        for (i, Pin { joint: pin, joins }) in all_pins.iter().copied().enumerate() {
+            let strangers =
+                links.iter().filter(|link| !joins.contains(link) && !parts.stands_in_slot(pin, **link));
+            for plate in strangers.copied() {
+                pins_plates.push(PinPlate { pin, plate, closest: pieces.pin_to_plate(pin, plate)? });
+            }
+            for other in &all_pins[i + 1..] {
+                pins.push(([pin, other.joint], pieces.between_pins(pin, other.joint)?));
+            }
+        }
+        Some(Layering { links, traced: parts.traced(), all_pins, free_pairs, pins_plates, pins, stack: None })
+    }
 }
 
 /// The layer of each plate, in the order of the links.
@@ -137,63 +154,78 @@ fn between(places: &[usize], pin: &Pin) -> std::ops::Range<usize> {
     one.min(other) + 1..one.max(other).max(one.min(other) + 1)
 }
 
-/// The pairs of parts that cross if a stacking brings them together.
+/// The pairs of parts that cross if a stacking brings them together, for each plate in the order of the links: those of which it is
+/// the last plate that is placed.
 struct Crossings {
-    /// For each plate, in the order of the links: the plates before it that may not share its layer.
+    /// Plates that may not share its layer.
     apart: Vec<Vec<usize>>,
     /// Pins and plates that may not be in a layer between the pin's two.
-    pins_plates: Vec<(Pin, Link)>,
+    pins_plates: Vec<Vec<(Pin, Link)>>,
     /// Pairs of pins that may not pass through one layer.
-    pins: Vec<[Pin; 2]>,
+    pins: Vec<Vec<[Pin; 2]>>,
 }
 
 impl Crossings {
     fn of(layering: &Layering) -> Self {
         let n = layering.links.len();
-        let mut apart = vec![Vec::new(); n];
+        let mut all = Crossings {
+            apart: vec![Vec::new(); n],
+            pins_plates: vec![Vec::new(); n],
+            pins: vec![Vec::new(); n],
+        };
         let joined = layering.all_pins.iter().map(|pin| pin.joins);
         let crossing =
             layering.free_pairs.iter().filter(|pair| !clear(&pair.closest)).map(|pair| pair.plates);
         for pair in joined.chain(crossing) {
             let [one, other] = pair.map(Link::place);
-            apart[one.max(other)].push(one.min(other));
+            all.apart[one.max(other)].push(one.min(other));
         }
         let pin = |joint: Joint| layering.all_pins.iter().find(|pin| pin.joint == joint).copied();
-        let pins_plates = layering.pins_plates.iter().filter(|p| !clear(&p.closest));
-        let pins = layering.pins.iter().filter(|(_, closest)| !clear(closest));
-        Crossings {
-            apart,
-            pins_plates: pins_plates.filter_map(|p| Some((pin(p.pin)?, p.plate))).collect(),
-            pins: pins.filter_map(|([one, other], _)| Some([pin(*one)?, pin(*other)?])).collect(),
+        let last = |pin: &Pin| pin.joins.map(Link::place).into_iter().fold(0, usize::max);
+        for pair in layering.pins_plates.iter().filter(|pair| !clear(&pair.closest)) {
+            if let Some(pin) = pin(pair.pin) {
+                all.pins_plates[last(&pin).max(pair.plate.place())].push((pin, pair.plate));
+            }
         }
+        for (pair, _) in layering.pins.iter().filter(|(_, closest)| !clear(closest)) {
+            if let [Some(one), Some(other)] = pair.map(pin) {
+                all.pins[last(&one).max(last(&other))].push([one, other]);
+            }
+        }
+        all
     }
 
-    /// Calls a function with every stacking of `count` layers, all of them used, in which no plates share a layer that may not.
-    fn each_of(&self, count: usize, places: &mut Places, visit: &mut impl FnMut(&Places)) {
-        let plate = places.len();
-        if plate == self.apart.len() {
-            if (0..count).all(|layer| places.contains(&layer)) {
-                visit(places);
-            }
-            return;
+    /// Calls a function with every stacking of `count` layers in which nothing crosses, until it breaks.
+    fn each_of(
+        &self,
+        count: usize,
+        places: &mut Places,
+        visit: &mut impl FnMut(&Places) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        if places.len() == self.apart.len() {
+            return visit(places);
         }
         for layer in 0..count {
-            if self.apart[plate].iter().all(|other| places[*other] != layer) {
-                places.push(layer);
-                self.each_of(count, places, visit);
-                places.pop();
+            places.push(layer);
+            if self.allow_last(places) {
+                self.each_of(count, places, visit)?;
             }
+            places.pop();
         }
+        ControlFlow::Continue(())
     }
 
-    /// Returns whether no pin crosses a plate or another pin.
-    fn allow(&self, places: &Places) -> bool {
+    /// Returns whether the plate that was placed last, and the pins whose last plate it is, cross nothing.
+    fn allow_last(&self, places: &Places) -> bool {
+        let plate = places.len() - 1;
         let side_by_side = |[one, other]: &[Pin; 2]| {
             let [one, other] = [one, other].map(|pin| between(places, pin));
             one.start.max(other.start) < one.end.min(other.end)
         };
-        !self.pins_plates.iter().any(|(pin, plate)| between(places, pin).contains(&layer(places, *plate)))
-            && !self.pins.iter().any(side_by_side)
+        let passes = |(pin, other): &(Pin, Link)| between(places, pin).contains(&layer(places, *other));
+        !self.apart[plate].iter().any(|other| places[*other] == places[plate])
+            && !self.pins_plates[plate].iter().any(passes)
+            && !self.pins[plate].iter().any(side_by_side)
     }
 }
 
@@ -204,9 +236,9 @@ impl Layering {
             |places: &Places| self.all_pins.iter().map(|pin| between(places, pin).len()).sum::<usize>();
         (2..=self.links.len()).find_map(|count| {
             let mut best = None;
-            crossings.each_of(count, &mut Vec::new(), &mut |places| {
-                if !crossings.allow(places) {
-                    return;
+            let _ = crossings.each_of(count, &mut Vec::new(), &mut |places| {
+                if !(0..count).all(|layer| places.contains(&layer)) {
+                    return ControlFlow::Continue(());
                 }
                 let traced = layer(places, self.traced);
                 let inside = traced != 0 && traced + 1 != count;
@@ -214,6 +246,7 @@ impl Layering {
                 if best.as_ref().is_none_or(|best| merit < *best) {
                     best = Some(merit);
                 }
+                ControlFlow::Continue(())
             });
             best.map(|(.., places)| Stack {
                 layers: (0..count)

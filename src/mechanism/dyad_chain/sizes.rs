@@ -41,22 +41,28 @@ impl Side {
     }
 }
 
+/// Returns the joints of a body of a kind of chain, and P where it carries it; the line of its frame joins the first two.
+pub fn joints(kind: DyadChainKind, body: usize) -> Vec<Joint> {
+    let mut joints = vec![Joint::Fixed(0.0)];
+    joints.push(if body == CRANK { Joint::CrankPin } else { Joint::Fixed(1.0) });
+    for dyad in 1..kind.dyads() {
+        for (end, on) in kind.anchors(dyad).into_iter().enumerate() {
+            if on == body {
+                joints.push(Joint::End { dyad, end });
+            }
+        }
+    }
+    if kind.traced() == body {
+        joints.push(Joint::Traced);
+    }
+    joints
+}
+
 /// Returns all pairs of joints of each body of a kind of chain.
 pub fn sides(kind: DyadChainKind) -> Vec<Side> {
     let mut sides = Vec::new();
     for body in 0..2 + 2 * kind.dyads() {
-        let mut joints = vec![Joint::Fixed(0.0)];
-        joints.push(if body == CRANK { Joint::CrankPin } else { Joint::Fixed(1.0) });
-        for dyad in 1..kind.dyads() {
-            for (end, on) in kind.anchors(dyad).into_iter().enumerate() {
-                if on == body {
-                    joints.push(Joint::End { dyad, end });
-                }
-            }
-        }
-        if kind.traced() == body {
-            joints.push(Joint::Traced);
-        }
+        let joints = joints(kind, body);
         for (i, one) in joints.iter().enumerate() {
             for other in &joints[..i] {
                 sides.push(Side { body, joints: [*other, *one] });

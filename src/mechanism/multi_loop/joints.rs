@@ -82,6 +82,11 @@ impl MultiLoop {
         self.joints().iter().filter(|joint| joint.body == GROUND).map(|joint| joint.at).collect()
     }
 
+    /// Returns the fixed pivots with their names.
+    pub fn named_pivots(&self) -> Vec<(&'static str, Complex)> {
+        self.links().swap_remove(GROUND).joints
+    }
+
     /// Returns the bodies, each with all of its joints: the ground, the crank, then the links of each dyad.
     pub fn links(&self) -> Vec<Body> {
         let (kind, zero) = (self.kind, Complex::new(0.0, 0.0));

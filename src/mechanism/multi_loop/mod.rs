@@ -24,16 +24,19 @@
 //! | [`joints`] | the joints of a linkage and of each body, by name |
 //! | [`kind`] | the linkage as a mechanism of any kind |
 //! | [`keys`] | the keys of `[chain]` in files and records |
+//! | [`lengths`] | the lengths that fix the shape of each body, and linkages with given ones |
 //! | [`turn`] | whether the crank turns fully, and the transmission angles of all dyads |
 
 pub mod conversion;
 pub mod joints;
 pub mod keys;
 pub mod kind;
+pub mod lengths;
 pub mod turn;
 
 pub use joints::{Body, NamedJoint};
 pub use keys::{ChainKeys, NoMultiLoop};
+pub use lengths::LinkLength;
 
 use super::dyad_chain::kinds::{CRANK, DyadChainKind, GROUND, MAX_BODIES, MAX_DYADS};
 use super::{AssemblyMode, Complex, FLAT_TOLERANCE, LinkageError, LinkageKind, MAX_MAGNITUDE, dot, xy};

@@ -4,7 +4,9 @@ use super::constants::{EXACT, SAME};
 use super::fit::State;
 use super::request::{DyadChainLimits, Request};
 use super::target::{Target, Variant};
-use crate::mechanism::{Complex, DyadChain, DyadChainKind, MultiLoop, bounding_box, nearest_share};
+use crate::mechanism::{
+    Complex, DyadChain, DyadChainKind, MultiLoop, bounding_box, least_and_greatest, nearest_share,
+};
 use std::f64::consts::TAU;
 
 /// Phases of a turn at which the curve's distance from the target is measured.
@@ -78,8 +80,8 @@ impl Pool {
 pub struct DyadChainAnswer {
     /// The chain.
     pub chain: DyadChain,
-    /// The phase of the crank at each target point, radians from the line A-B; they never fall, or never rise, and lie
-    /// within one turn.
+    /// The phase of the crank at each target point, radians from the line A-B; with free timing they
+    /// never fall, or never rise, and lie within one turn.
     pub phases: Vec<f64>,
     /// The root mean square of the points' distances from P at these phases.
     pub rms: f64,
@@ -152,11 +154,8 @@ fn reaches_within(
     if footprint_in.is_none() && extent_max.is_infinite() {
         return true;
     }
-    let (Ok(linkage), Some(first), Some(last)) =
-        (MultiLoop::of_dyad_chain(chain), phases.first(), phases.last())
-    else {
-        return false;
-    };
+    let Ok(linkage) = MultiLoop::of_dyad_chain(chain) else { return false };
+    let [first, last] = least_and_greatest(phases.iter().copied());
     let span = if closed { TAU } else { last - first };
     let at = |i: usize| chain.ground_angle() + first + span * i as f64 / MEASURED as f64;
     let bodies = (0..=MEASURED).filter_map(|i| linkage.bodies(at(i)));
@@ -171,7 +170,7 @@ fn reaches_within(
 
 /// Returns the largest distance of the curve from the target's polygon.
 fn excursion(chain: &DyadChain, phases: &[f64], request: &Request<'_>) -> f64 {
-    let (Some(first), Some(last)) = (phases.first(), phases.last()) else { return 0.0 };
+    let [first, last] = least_and_greatest(phases.iter().copied());
     let points = request.points;
     let of = chain.proportions();
     let edges = if request.closed { points.len() } else { points.len() - 1 };

@@ -18,27 +18,30 @@ use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
 use rayon::prelude::*;
 
 /// Draws of one random stream.
-const CHUNK: usize = 250;
+pub(super) const CHUNK: usize = 250;
 /// Arcs of each curve for an open target, and the range of their share of the curve.
 const ARCS: usize = 8;
 const ARC_SHARE: (f64, f64) = (0.15, 0.95);
 /// A chain may be longer than the limit by this factor before it is fitted.
-const TOO_LONG: f64 = 2.0;
+pub(super) const TOO_LONG: f64 = 2.0;
 
-/// A start of a fit: a chain in the frame A = 0, B = 1, and where a variant of the target begins on it.
+/// A start of a fit: a chain, in the frame A = 0, B = 1 unless the timing is prescribed, and where a variant of the target begins on it.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
     pub(super) chain: DyadChain,
     pub(super) variant: Variant,
-    /// Correlation with the target, 1 at best.
-    score: f64,
-    /// Phases at equal arcs from the target's beginning to its end.
-    along: Vec<f64>,
+    /// Correlation with the target; of prescribed timing 1 less the part of its mean square that is left. 1 at best.
+    pub(super) score: f64,
+    /// Phases at equal arcs from the target's beginning to its end; of prescribed timing the offset of the phases.
+    pub(super) along: Vec<f64>,
 }
 
 impl Start {
     /// Returns the phases of points by their shares of the arc length.
     pub(super) fn phases(&self, points: &Points) -> Vec<f64> {
+        if let Some(times) = &points.timing {
+            return times.angles.iter().map(|angle| angle + self.along[0]).collect();
+        }
         let at = |share: &f64| {
             let place = share * EVEN as f64;
             let i = (place as usize).min(EVEN - 1);
@@ -50,16 +53,16 @@ impl Start {
 
 /// The number of a draw and of one of its arcs.
 #[derive(Clone, Copy, Debug)]
-struct Kept {
-    score: f64,
-    stream: u64,
-    place: usize,
-    arc: usize,
-    variant: Variant,
+pub(super) struct Kept {
+    pub(super) score: f64,
+    pub(super) stream: u64,
+    pub(super) place: usize,
+    pub(super) arc: usize,
+    pub(super) variant: Variant,
 }
 
 /// Returns the best `most`, the best first; of equal ones the first drawn.
-fn best_of(mut kept: Vec<Kept>, most: usize) -> Vec<Kept> {
+pub(super) fn best_of(mut kept: Vec<Kept>, most: usize) -> Vec<Kept> {
     let key = |kept: &Kept| (kept.stream, kept.place, kept.arc);
     kept.sort_by(|a, b| b.score.total_cmp(&a.score).then(key(a).cmp(&key(b))));
     kept.truncate(most);
@@ -196,7 +199,7 @@ impl Atlas<'_> {
 }
 
 /// Returns the largest distance between two joints of one body in the frame A = 0, B = 1.
-fn longest(of: &Proportions, place: Complex, sides: &[Side]) -> f64 {
+pub(super) fn longest(of: &Proportions, place: Complex, sides: &[Side]) -> f64 {
     let one = Complex::new(1.0, 0.0);
     let at = Placement { origin: Complex::new(0.0, 0.0), ground: one, pointer: place };
     sides.iter().map(|side| distance(of, &at, side)).fold(0.0, f64::max)

@@ -63,6 +63,10 @@ pub(super) const SIZE_WEIGHT: f64 = 0.05;
 pub(super) const PIVOT_WEIGHT: f64 = 0.05;
 pub(super) const LAST_COSINES: f64 = 300.0;
 pub(super) const LAST_SIZES: f64 = 30_000.0;
+/// Weight a point of the squares of what is held, to which each trial is brought back before it is valued.
+pub(super) const HELD_WEIGHT: f64 = 1e6;
+/// Newton steps by which a start, and each trial, are brought to what is held.
+pub(super) const HELD_STEPS: [usize; 2] = [40, 4];
 /// Fits keep this far within the limits: radians, logarithms of lengths, shares of the rms radius.
 pub(super) const WITHIN_ANGLE: f64 = 2e-3;
 pub(super) const WITHIN_SIZE: f64 = 1e-3;

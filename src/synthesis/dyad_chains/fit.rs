@@ -8,21 +8,25 @@
 //! tau = -<g, r + J dx> / (|g|^2 + lt),   lt = min(lambda, 1) mean |g|^2
 //! ```
 //!
-//! (derived here: a Schur complement.) After each step the phases are projected onto the nearest sequence in order, and
-//! T, S, Z are solved anew unless a limit of size is active; a step is kept if the sum of squares falls. Hinges hold the
+//! (derived here: a Schur complement.) Of prescribed phases only a common offset is an unknown, if that is free, and eliminated
+//! likewise; where they count from the x axis they fall as S turns. After each step the phases are projected onto the nearest sequence in order, and
+//! T, S, Z are solved anew unless a limit of size is active or phases depend on S; a step is kept if the sum of squares falls. Hinges hold the
 //! transmission angles, the lengths, and the curve between two neighbouring points.
 
+use super::constants::HELD_STEPS;
+use super::held::AllHeld;
 use super::limits::{Bodies, Limits};
 use super::normal_equations::{MAX_COLUMNS, Matrix, gram, solve};
 use super::order::Order;
 use super::rows::Rows;
 use super::target::Points;
 use super::trial::Trial;
-use crate::mechanism::dyad_chain::{DyadChain, Frames, Placement};
+use crate::mechanism::dyad_chain::{DyadChain, DyadChainKind, Frames, Placement};
 use crate::numbers::arithmetic::Complex;
 use crate::numbers::arithmetic::complex_lanes::ComplexLanes;
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
+use crate::task::AngleOffset;
 
 /// Greatest change of a phase (radians) and of a parameter in a step.
 const MOST_PHASE: f64 = 0.3;
@@ -107,6 +111,12 @@ impl Default for Fitter {
 }
 
 impl Fitter {
+    /// Makes all further fits of chains of a kind hold dimensions.
+    pub(super) fn hold(&mut self, kind: DyadChainKind, held: AllHeld) {
+        self.bodies.of(kind);
+        self.bodies.held = held;
+    }
+
     /// Fits a state to points.
     pub(super) fn fit(
         &mut self,
@@ -125,7 +135,11 @@ impl Fitter {
         self.bodies.of(state.chain.shape.kind);
         self.next.shape = state.chain.shape;
         self.next.phases[..points.count].copy_from_slice(&state.phases);
-        self.evaluate(points, limits, (linear == Linear::Known).then_some(state.chain.placement));
+        let placement = (linear == Linear::Known).then_some(state.chain.placement);
+        match placement.map(|at| self.held(at, HELD_STEPS[0])) {
+            Some(None) => self.next.value = f64::INFINITY,
+            at => self.time_and_evaluate(points, limits, at.flatten()),
+        }
         std::mem::swap(&mut self.now, &mut self.next);
         if self.now.value.is_finite() {
             self.descend(points, limits, ending);
@@ -152,8 +166,11 @@ impl Fitter {
             );
             is_fresh = is_solved && {
                 self.advance(points);
-                self.evaluate(points, limits, Some(self.stepped()));
-                self.next.value < self.now.value
+                let at = self.held(self.stepped(), HELD_STEPS[1]);
+                if at.is_some() {
+                    self.time_and_evaluate(points, limits, at);
+                }
+                at.is_some() && self.next.value < self.now.value
             };
             if is_fresh {
                 let fall = (self.now.value - self.next.value) / self.now.value;
@@ -168,6 +185,24 @@ impl Fitter {
                 break;
             }
         }
+    }
+
+    /// Brings the shape of the next trial and a placement to what is held; returns the placement, `None` where that fails.
+    fn held(&mut self, at: Placement, steps: usize) -> Option<Placement> {
+        if self.bodies.held.is_empty() {
+            return Some(at);
+        }
+        self.next.at = at;
+        self.bodies.held.restore(&mut self.next, steps).then_some(self.next.at)
+    }
+
+    /// Puts prescribed phases in their place for a placement, and computes the value of the next trial.
+    fn time_and_evaluate(&mut self, points: &Points, limits: &Limits, at: Option<Placement>) {
+        if let Some(times) = &points.timing {
+            let ground = at.map_or(Complex::new(1.0, 0.0), |at| at.ground);
+            times.put(ground, &mut self.next.phases[..points.count]);
+        }
+        self.evaluate(points, limits, at);
     }
 
     /// Computes the value of the next trial.
@@ -189,7 +224,9 @@ impl Fitter {
         for ((next, now), tau) in next.phases[..n].iter_mut().zip(&now.phases[..n]).zip(&self.tau) {
             *next = now + tau.clamp(-MOST_PHASE, MOST_PHASE);
         }
-        self.order.project(&mut next.phases[..n], points.closed);
+        if points.timing.is_none() {
+            self.order.project(&mut next.phases[..n], points.closed);
+        }
     }
 
     /// Returns T, S and Z moved by the step.
@@ -209,13 +246,32 @@ impl Fitter {
         let mean = speeds[..points.count].iter().sum::<f64>() / points.count as f64;
         let slack = F64x8::splat(damping.min(1.0) * mean + f64::MIN_POSITIVE);
         for at in (0..padded).step_by(LANES) {
-            let weight = (slack * (F64x8::load(speeds, at) + slack).recip()).sqrt();
+            let weight = match points.timing {
+                None => (slack * (F64x8::load(speeds, at) + slack).recip()).sqrt(),
+                Some(_) => F64x8::splat(1.0),
+            };
             for column in 0..columns {
                 let place = column * padded + at;
                 (F64x8::load(tangent, place) * weight).store(&mut self.weighted, place);
             }
         }
         gram(&self.weighted, padded, columns, &mut self.moving);
+        // The common offset of prescribed phases is eliminated: the part of all rows along it.
+        let mut along = [0.0; MAX_COLUMNS];
+        let whole: f64 =
+            speeds[..points.count].iter().sum::<f64>() * (1.0 + damping.min(1.0)) + f64::MIN_POSITIVE;
+        let is_offset_free = points.timing.as_ref().is_some_and(|times| times.offset == AngleOffset::Free);
+        if is_offset_free {
+            for (column, along) in along.iter_mut().enumerate().take(columns) {
+                let own = &tangent[column * padded..column * padded + points.count];
+                *along = own.iter().zip(speeds).map(|(entry, speed)| entry * speed.sqrt()).sum();
+            }
+            for (row, one) in self.moving.iter_mut().zip(&along).take(columns) {
+                for (entry, other) in row.iter_mut().zip(&along).take(columns) {
+                    *entry -= one * other / whole;
+                }
+            }
+        }
         let mut matrix = *self.rows.fixed;
         for (row, other) in matrix.iter_mut().zip(self.moving.iter()).take(columns) {
             for (a, b) in row.iter_mut().zip(other).take(columns) {
@@ -223,11 +279,21 @@ impl Fitter {
             }
         }
         for (k, row) in matrix.iter_mut().enumerate().take(unknowns) {
-            row[k] += if k < count {
+            // S is as little linear as the shape is where phases depend on it.
+            let is_damped = k < count || (points.follow_the_ground() && (count + 2..count + 4).contains(&k));
+            row[k] += if is_damped {
                 damping * row[k] + FLOOR * points.count as f64
             } else {
                 LINEAR_FLOOR * row[k]
             };
+        }
+        if !self.bodies.held.is_empty() {
+            // Not damped: beside their weights nothing else would move.
+            for (row, other) in matrix.iter_mut().zip(self.rows.held.iter()).take(columns) {
+                for (a, b) in row.iter_mut().zip(other).take(columns) {
+                    *a += b;
+                }
+            }
         }
         if !solve(&mut matrix, unknowns, &mut self.step) {
             return false;
@@ -241,6 +307,11 @@ impl Fitter {
             self.step[..unknowns].iter_mut().for_each(|x| *x *= factor);
         }
         self.step[unknowns] = 1.0;
+        if points.timing.is_some() {
+            let sum: f64 = along.iter().zip(&self.step).take(columns).map(|(a, b)| a * b).sum();
+            self.tau.fill(-sum / whole);
+            return true;
+        }
         for at in (0..padded).step_by(LANES) {
             let speed = F64x8::load(speeds, at);
             let mut sum = F64x8::splat(0.0);

@@ -3,6 +3,7 @@
 use super::constants::{
     COSINE_WEIGHT, LAST_COSINES, LAST_SIZES, PIVOT_WEIGHT, SIZE_WEIGHT, WITHIN_ANGLE, WITHIN_SIZE,
 };
+use super::held::AllHeld;
 use super::request::DyadChainLimits;
 use super::target::Target;
 use crate::mechanism::dyad_chain::kinds::{CRANK, DyadChainKind, GROUND};
@@ -32,7 +33,7 @@ pub(super) struct Limits {
     pub(super) pivot_weight: f64,
 }
 
-/// The bodies of one kind of chain: the pairs of their joints, and the joints on the ground.
+/// The bodies of one kind of chain: the pairs of their joints, the joints on the ground, and what is held of them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bodies {
     kind: Option<DyadChainKind>,
@@ -40,6 +41,8 @@ pub(super) struct Bodies {
     pub(super) pivots: Vec<Joint>,
     /// The moving joints and P, each on a body that carries it.
     pub(super) moving: Vec<(usize, Joint)>,
+    /// Dimensions at given values.
+    pub(super) held: AllHeld,
 }
 
 impl Bodies {
@@ -50,6 +53,7 @@ impl Bodies {
             return;
         }
         (self.kind, self.sides) = (Some(kind), sides(kind));
+        self.held = AllHeld::default();
         self.pivots = vec![Joint::Fixed(0.0), Joint::Fixed(1.0)];
         for dyad in 1..kind.dyads() {
             for (end, body) in kind.anchors(dyad).into_iter().enumerate() {
@@ -164,7 +168,7 @@ impl Limits {
         sum * self.cosine_weight
     }
 
-    /// Returns the sum of the weighted squares of the hinges on lengths and pivots, a point.
+    /// Returns the sum of the weighted squares of the hinges on lengths and pivots, and of what is held, a point.
     #[inline(always)]
     pub(super) fn of_sizes(&self, of: &Proportions, at: &Placement, bodies: &Bodies) -> f64 {
         let mut sum = 0.0;
@@ -180,6 +184,6 @@ impl Limits {
                 sum += (x * x + y * y) * self.pivot_weight;
             }
         }
-        sum
+        sum + bodies.held.value(of, at)
     }
 }

@@ -12,9 +12,9 @@ use crate::mechanism::dyad_chain::kinds::{CRANK, GROUND};
 use crate::mechanism::dyad_chain::proportions::{first_parameter, parameters_of};
 use crate::mechanism::dyad_chain::sizes::Joint;
 use crate::mechanism::dyad_chain::{Frames, Grid, MAX_SLOPES, Rates, Slopes};
-use crate::numbers::arithmetic::Complex;
 use crate::numbers::arithmetic::complex_lanes::ComplexLanes;
 use crate::numbers::arithmetic::sine::sin_cos;
+use crate::numbers::arithmetic::{Complex, least_and_greatest};
 
 /// Steps of the finer look between the phases of the grid beside an extreme.
 const FINER: usize = 16;
@@ -132,7 +132,7 @@ fn settled(now: &Trial, reach: Reach) -> Reach {
 /// Returns the reaches of all joints to a side: along an axis (0: x, 1: y) in the sense of `sign`.
 fn reaches(now: &Trial, points: &Points, bodies: &Bodies, axis: usize, sign: f64) -> Vec<Reach> {
     let step = Grid::phase(1);
-    let used = (!points.closed).then(|| [now.phases[0], now.phases[points.count - 1]]);
+    let used = (!points.closed).then(|| least_and_greatest(now.phases[..points.count].iter().copied()));
     let of_joint = |&(body, joint): &(usize, Joint)| {
         let curve = now.grid.points(body, [now.at.origin, now.at.ground, now.at.ground * place(now, joint)]);
         let column = &curve[axis];

@@ -162,7 +162,7 @@ mod tests {
         let points: Vec<Complex> = (0..64).map(|i| curve[(120 + 4 * i) % PHASES]).collect();
         for closed in [true, false] {
             let points = if closed { points.clone() } else { points[..50].to_vec() };
-            let target = Target::of(&points, closed, 100, 64).expect("a target");
+            let target = Target::of((&points, closed), None, 100, 64).expect("a target");
             // The chain in the coordinates of the normalised target.
             let [t, s, z] = chain.placement.numbers();
             let placement = Placement {

@@ -2,6 +2,7 @@
 
 use super::checkpoint::DyadChainState;
 use crate::mechanism::{Complex, DyadChainKind};
+use crate::task::AngleOffset;
 
 /// The limits that an answer has to meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,16 +23,48 @@ pub struct DyadChainLimits {
     pub extent_max: f64,
 }
 
-/// A path to draw with free timing, by a chain whose crank turns fully.
+/// Crank angles at which a path is to be drawn: `offset + run angles[j]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DyadChainTiming<'a> {
+    /// The angle at each point, radians, not wrapped.
+    pub angles: &'a [f64],
+    /// From where they count.
+    pub offset: AngleOffset,
+    /// The senses in which their increments may be run, of +1 and -1.
+    pub runs: &'a [f64],
+}
+
+impl DyadChainTiming<'_> {
+    /// Returns in which sense angles follow those that are prescribed: +1 if they rise where these rise, -1 if they fall there.
+    pub fn run(&self, angles: &[f64]) -> f64 {
+        run(angles, self.angles)
+    }
+
+    /// Returns the sense of the prescribed angles themselves: -1 if they fall in the whole.
+    pub(super) fn sense(&self) -> f64 {
+        if self.angles.last() < self.angles.first() { -1.0 } else { 1.0 }
+    }
+}
+
+/// Returns +1 if two lists of angles turn the same way, -1 if they turn against each other.
+pub fn run(one: &[f64], other: &[f64]) -> f64 {
+    let from = |list: &[f64]| list.first().copied().unwrap_or_default();
+    let together: f64 = one.iter().zip(other).map(|(a, b)| (a - from(one)) * (b - from(other))).sum();
+    if together < 0.0 { -1.0 } else { 1.0 }
+}
+
+/// A path to draw, by a chain whose crank turns fully.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'a> {
     /// The points in order. A closed path does not repeat its first point.
     pub points: &'a [Complex],
     /// Whether the path goes on from the last point to the first.
     pub closed: bool,
+    /// The crank angles at the points, one for each; `None` with free timing.
+    pub timing: Option<DyadChainTiming<'a>>,
     /// The kinds of chains to search, e.g. [`DyadChainKind::SIX_BARS`].
     pub kinds: &'a [DyadChainKind],
-    /// Whether the crank has to turn counter-clockwise as P passes the points in their order.
+    /// Whether the crank has to turn counter-clockwise as P passes the points in their order; with prescribed timing the runs say it.
     pub counter_clockwise: bool,
     /// The limits.
     pub limits: DyadChainLimits,
@@ -57,7 +90,11 @@ impl Request<'_> {
             .chain([&self.limits.footprint_in])
             .flatten()
             .all(|[low, high]| low.re < high.re && low.im < high.im);
+        let timed = |timing: &DyadChainTiming<'_>| {
+            timing.angles.len() == self.points.len() && timing.angles.iter().all(|angle| angle.is_finite())
+        };
         !self.kinds.is_empty()
+            && self.timing.as_ref().is_none_or(timed)
             && (0.0..1.5).contains(&transmission_min)
             && longest_max > 0.0
             && link_ratio_max > 1.0

@@ -24,6 +24,8 @@ pub(super) struct Rows {
     /// |g|^2 of each point.
     pub(super) speed_sq: Vec<f64>,
     pub(super) fixed: Box<Matrix>,
+    /// The sum of the squares of the rows of what is held.
+    pub(super) held: Box<Matrix>,
 }
 
 impl Default for Rows {
@@ -35,6 +37,7 @@ impl Default for Rows {
             tangent: Vec::new(),
             speed_sq: Vec::new(),
             fixed: Box::new([[0.0; MAX_COLUMNS]; MAX_COLUMNS]),
+            held: Box::new([[0.0; MAX_COLUMNS]; MAX_COLUMNS]),
         }
     }
 }
@@ -107,6 +110,15 @@ impl Rows {
             );
             let residual = t + s * o + z * v - ComplexLanes::load(&points.columns, at);
             split(residual, unit, [&mut normal, &mut tangent], (count + 6) * padded + at);
+            if points.follow_the_ground() {
+                // The phases fall by as much as S turns.
+                let speed = speed_sq.sqrt() * F64x8::load(&points.mask, at);
+                let per = now.at.ground / now.at.ground.norm_sqr();
+                for (column, rate) in [(count + 2, per.im), (count + 3, -per.re)] {
+                    let place = column * padded + at;
+                    (F64x8::load(&tangent, place) + speed * F64x8::splat(rate)).store(&mut tangent, place);
+                }
+            }
             (self.normal, self.tangent) = (normal, tangent);
         }
         self.speed_sq[points.count..].fill(0.0);
@@ -159,6 +171,10 @@ impl Rows {
                 }
             }
         }
+        if !bodies.held.is_empty() {
+            *self.held = [[0.0; MAX_COLUMNS]; MAX_COLUMNS];
+            bodies.held.add(&mut self.held, now, &self.rates, points.count);
+        }
     }
 
     /// Adds the hinges of footprint and extent.
@@ -203,7 +219,7 @@ fn split(j: ComplexLanes, unit: ComplexLanes, [normal, tangent]: [&mut [f64]; 2]
 
 /// Returns the row of the logarithm of a length.
 #[inline(always)]
-fn size_row(now: &Trial, rates: &Rates, side: &Side, residual: f64) -> [f64; MAX_COLUMNS] {
+pub(super) fn size_row(now: &Trial, rates: &Rates, side: &Side, residual: f64) -> [f64; MAX_COLUMNS] {
     let count = now.shape.count();
     let rate = log_rate(&now.of, rates, &now.at, side);
     let mut row = [0.0; MAX_COLUMNS];
@@ -216,7 +232,7 @@ fn size_row(now: &Trial, rates: &Rates, side: &Side, residual: f64) -> [f64; MAX
 
 /// Returns the row of a coordinate (0: x, 1: y) of a fixed pivot at a place of the frame A = 0, B = 1.
 #[inline(always)]
-fn pivot_row(
+pub(super) fn pivot_row(
     now: &Trial,
     joint: Joint,
     place: Complex,
@@ -239,11 +255,13 @@ fn pivot_row(
 #[cfg(test)]
 mod tests {
     use super::super::reach::broken;
+    use super::super::request::DyadChainTiming;
     use super::super::target::Target;
     use super::*;
     use crate::mechanism::AssemblyMode;
     use crate::mechanism::dyad_chain::{DyadChainKind, Placement, Shape};
     use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
+    use crate::task::AngleOffset;
 
     const LIMITS: Limits = Limits {
         cosine: 0.6,
@@ -300,10 +318,54 @@ mod tests {
     }
 
     #[test]
+    fn the_gradient_with_prescribed_phases_is_that_of_central_differences() {
+        let draws = &mut stream(62, 0);
+        let targets: Vec<Complex> = (0..12).map(|i| Complex::from_polar(1.0, 0.31 * f64::from(i))).collect();
+        let angles: Vec<f64> = (0..12).map(|i| 0.4 * f64::from(i)).collect();
+        let timing = DyadChainTiming { angles: &angles, offset: AngleOffset::Fixed, runs: &[1.0] };
+        let target = Target::of((&targets, false), Some(timing), 48, 64).expect("a target");
+        let points = &target.all[0];
+        for kind in DyadChainKind::SIX_BARS {
+            let (shape, at) = drawn(draws, kind);
+            let mut bodies = Bodies::default();
+            bodies.of(kind);
+            let mut trial = Trial::default();
+            trial.resize(points.mask.len());
+            let value = |(shape, at): (Shape, Placement), trial: &mut Trial| {
+                trial.shape = shape;
+                points.timing.as_ref().expect("times").put(at.ground, &mut trial.phases[..points.count]);
+                let frames = &mut Frames::of(ComplexLanes::ZERO);
+                trial.evaluate(points, &LIMITS, &bodies, frames, Some(at));
+                trial.misfit
+            };
+            let misfit = value((shape, at), &mut trial);
+            let mut rows = Rows::default();
+            rows.resize(points.mask.len());
+            rows.derive(&trial, points, &LIMITS, &Bodies::default(), &mut Frames::of(ComplexLanes::ZERO));
+            let (unknowns, padded) = (shape.count() + 6, points.mask.len());
+            let product = |part: &[f64], k: usize| -> f64 {
+                let column = |k: usize| &part[k * padded..(k + 1) * padded];
+                column(k).iter().zip(column(unknowns)).map(|(a, b)| a * b).sum()
+            };
+            for k in 0..unknowns {
+                let gradient = 2.0 * (product(&rows.normal, k) + product(&rows.tangent, k));
+                let step = 1e-6;
+                let mut at_step = |step| value(moved(shape, at, k, step), &mut trial) * points.count as f64;
+                let difference = (at_step(step) - at_step(-step)) / (2.0 * step);
+                let scale = misfit + difference.abs();
+                assert!(
+                    (gradient - difference).abs() < 1e-6 * scale,
+                    "{kind:?} {k}: {gradient} {difference}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn the_gradient_of_all_residuals_and_hinges_is_that_of_central_differences() {
         let draws = &mut stream(61, 0);
         let targets: Vec<Complex> = (0..20).map(|i| Complex::from_polar(1.0, 0.31 * f64::from(i))).collect();
-        let target = Target::of(&targets, true, 48, 64).expect("a target");
+        let target = Target::of((&targets, true), None, 48, 64).expect("a target");
         let points = &target.all[0];
         let kinds = DyadChainKind::SIX_BARS.into_iter().chain(DyadChainKind::eight_bars());
         for kind in kinds {

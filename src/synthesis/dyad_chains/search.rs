@@ -29,7 +29,7 @@ use rayon::prelude::*;
 /// Items of one job in each stage of an island's start.
 const STAGE_CHUNKS: [usize; 3] = [16, 4, 2];
 
-/// Searches for dyad chains whose P draws a path with free timing.
+/// Searches for dyad chains whose P draws a path, with free or with prescribed timing.
 ///
 /// The answers are the same on any number of threads, and whenever a search is repeated with the same request, unless
 /// `watch` stops it. With `earlier`, a state that `watch` was given by a search of the same request with any budget, it goes on
@@ -56,6 +56,7 @@ const STAGE_CHUNKS: [usize; 3] = [16, 4, 2];
 /// let request = Request {
 ///     points: &square,
 ///     closed: true,
+///     timing: None,
 ///     kinds: &DyadChainKind::SIX_BARS,
 ///     counter_clockwise: false,
 ///     limits,
@@ -79,7 +80,8 @@ pub fn search(
     if !request.is_usable() {
         return None;
     }
-    let target = Target::of(request.points, request.closed, FEW, EVEN)?.turning(request.counter_clockwise);
+    let target = Target::of((request.points, request.closed), request.timing, FEW, EVEN)?
+        .turning(request.counter_clockwise);
     let limits = [false, true].map(|mirrored| Limits::of(&request.limits, &target, mirrored));
     let setup = Setup { target: &target, limits: &limits };
     let mut search = Search {
@@ -226,7 +228,10 @@ impl Search<'_> {
             limits: &setup.limits[0],
         };
         self.next_stream += atlas.streams();
-        let mut starts = atlas.starts(setup.target, of(CASCADE[0]));
+        let mut starts = match setup.target.timed {
+            None => atlas.starts(setup.target, of(CASCADE[0])),
+            Some(_) => atlas.timed_starts(setup.target, of(CASCADE[0])),
+        };
         self.done.draws += of(DRAWS) as u64;
         self.done.evaluations += of(DRAWS) as u64 / DRAWS_PER_EVALUATION;
         starts.truncate(self.most(of(CASCADE[0])));

@@ -7,9 +7,11 @@ use super::constants::{
     LAST_STEPS, NEAR, PROMISING,
 };
 use super::fit::{Ending, Fitter, Linear, State};
+use super::held::AllHeld;
 use super::limits::Limits;
 use super::rematch::Rematch;
-use super::target::{Target, Variant};
+use super::target::{Points, Target, Variant};
+use crate::mechanism::DyadChainKind;
 use crate::numbers::arithmetic::streams::{Stream, below, normal, uniform, unit};
 use std::f64::consts::TAU;
 
@@ -30,6 +32,19 @@ pub(super) struct Bench {
 }
 
 impl Bench {
+    /// Makes all further fits of chains of a kind hold dimensions.
+    pub(super) fn hold(&mut self, kind: DyadChainKind, held: AllHeld) {
+        self.fitter.hold(kind, held);
+    }
+
+    /// Assigns points anew to the phases of a state, unless they are prescribed.
+    fn assign(&mut self, points: &Points, state: &mut State) {
+        if points.timing.is_none() {
+            self.rematch.assign(points, &state.chain, &mut state.phases);
+            self.assignments += 1;
+        }
+    }
+
     /// Returns the evaluations so far.
     pub(super) fn evaluations(&self) -> u64 {
         self.fitter.evaluations + ASSIGNMENT_COSTS * self.assignments
@@ -47,6 +62,11 @@ fn is_near(one: &State, other: &State) -> bool {
 }
 
 impl<'a> Setup<'a> {
+    /// Returns whether T, S and Z of a new start are known: those of prescribed phases are.
+    fn linear(&self) -> Linear {
+        if self.target.timed.is_some() { Linear::Known } else { Linear::Unknown }
+    }
+
     fn limits(&self, variant: Variant) -> &'a Limits {
         &self.limits[usize::from(variant.mirrored)]
     }
@@ -57,7 +77,7 @@ impl<'a> Setup<'a> {
         let phases = start.phases(points);
         let mut state = State { chain: start.chain, phases, value: f64::INFINITY, misfit: f64::INFINITY };
         let ending = Ending { steps: FIRST_STEPS, idle: IDLE };
-        bench.fitter.fit(points, self.limits(start.variant), &mut state, ending, Linear::Unknown);
+        bench.fitter.fit(points, self.limits(start.variant), &mut state, ending, self.linear());
         state
     }
 
@@ -65,8 +85,7 @@ impl<'a> Setup<'a> {
     pub(super) fn second_fit(&self, bench: &mut Bench, state: &mut State, variant: Variant, steps: usize) {
         let points = &self.target.few[variant.index()];
         let mut other = state.clone();
-        bench.rematch.assign(points, &other.chain, &mut other.phases);
-        bench.assignments += 1;
+        bench.assign(points, &mut other);
         let ending = Ending { steps, idle: IDLE };
         bench.fitter.fit(points, self.limits(variant), &mut other, ending, Linear::Known);
         if other.value < state.value {
@@ -78,12 +97,19 @@ impl<'a> Setup<'a> {
     pub(super) fn full_fit(&self, bench: &mut Bench, state: &State, variant: Variant) -> End {
         let points = &self.target.all[variant.index()];
         let limits = self.limits(variant);
-        let mut all = State { phases: self.spread(&state.phases, points.count), ..*state };
+        let phases = match &points.timing {
+            None => self.spread(&state.phases, points.count),
+            Some(times) => {
+                let mut phases = vec![state.phases[0]; points.count];
+                times.put(state.chain.placement.ground, &mut phases);
+                phases
+            }
+        };
+        let mut all = State { phases, ..*state };
         let ending = |steps| Ending { steps, idle: IDLE_FULL };
         bench.fitter.fit(points, limits, &mut all, ending(FULL_STEPS[0]), Linear::Known);
         let mut other = all.clone();
-        bench.rematch.assign(points, &other.chain, &mut other.phases);
-        bench.assignments += 1;
+        bench.assign(points, &mut other);
         bench.fitter.fit(points, limits, &mut other, ending(FULL_STEPS[1]), Linear::Known);
         let state = if other.value < all.value { other } else { all };
         End { state, variant, hits: 1 }
@@ -125,7 +151,7 @@ impl<'a> Setup<'a> {
         let phases = self.target.chosen.iter().map(|i| parent.state.phases[*i]).collect();
         let mut state = State { chain, phases, value: f64::INFINITY, misfit: f64::INFINITY };
         let ending = Ending { steps: HOP_STEPS, idle: IDLE };
-        bench.fitter.fit(points, self.limits(parent.variant), &mut state, ending, Linear::Unknown);
+        bench.fitter.fit(points, self.limits(parent.variant), &mut state, ending, self.linear());
         let within = |state: &State, factor: f64| state.value < factor * pool.best();
         if !within(&state, HOPELESS) {
             return None;

@@ -1,11 +1,14 @@
 //! Target of a dyad chain: points in order, normalised to their centroid and rms radius, in four variants.
 //!
 //! A crank that turns the other way, or the mirrored chain, draws the target reversed, or mirrored. A fit has rising phases
-//! and no reflection, so the four variants {forward, reversed} x {as it is, mirrored} stand for them.
+//! and no reflection, so the four variants {forward, reversed} x {as it is, mirrored} stand for them. With prescribed phases the
+//! two that are not reversed suffice: the mirrored one is drawn by a crank that turns clockwise.
 
+use super::request::DyadChainTiming;
 use crate::mechanism::dyad_chain::{DyadChain, Placement};
 use crate::mechanism::{Complex, centroid_and_radius};
 use crate::numbers::arithmetic::lane::LANES;
+use crate::task::AngleOffset;
 
 /// The points of a fit, evenly weighted.
 #[derive(Clone, Debug)]
@@ -21,10 +24,41 @@ pub(super) struct Points {
     pub(super) spacing: f64,
     /// Share of the arc length up to each point.
     pub(super) shares: Vec<f64>,
+    /// The phases, of prescribed timing.
+    pub(super) timing: Option<Times>,
+}
+
+/// Phases of points that are prescribed, up to an offset.
+#[derive(Clone, Debug)]
+pub(super) struct Times {
+    /// The angle at each point, the last one at least the first.
+    pub(super) angles: Vec<f64>,
+    pub(super) offset: AngleOffset,
+    /// Whether they never fall.
+    pub(super) rise: bool,
+}
+
+impl Times {
+    /// Puts the phases of a chain in its place; of those with a free offset, from the first phase on.
+    pub(super) fn put(&self, ground: Complex, phases: &mut [f64]) {
+        let offset = match self.offset {
+            AngleOffset::Free => phases[0] - self.angles[0],
+            AngleOffset::Fixed => -ground.arg(),
+            AngleOffset::Ground => 0.0,
+        };
+        for (phase, angle) in phases.iter_mut().zip(&self.angles) {
+            *phase = angle + offset;
+        }
+    }
 }
 
 impl Points {
-    fn new(points: &[Complex], shares: &[f64], length: f64, closed: bool) -> Self {
+    fn new(
+        points: &[Complex],
+        (shares, length): (&[f64], f64),
+        closed: bool,
+        timing: Option<(Vec<f64>, AngleOffset)>,
+    ) -> Self {
         let count = points.len();
         let padded = count.next_multiple_of(LANES);
         let column = |part: fn(&Complex) -> f64| {
@@ -42,7 +76,17 @@ impl Points {
             closed,
             spacing: length / gaps.max(1) as f64,
             shares: shares.to_vec(),
+            timing: timing.map(|(angles, offset)| {
+                let rise = angles.windows(2).all(|pair| pair[0] <= pair[1]);
+                Times { angles, offset, rise }
+            }),
         }
+    }
+
+    /// Returns whether their phases depend on the direction of the ground.
+    #[inline(always)]
+    pub(super) fn follow_the_ground(&self) -> bool {
+        self.timing.as_ref().is_some_and(|times| times.offset == AngleOffset::Fixed)
     }
 
     #[inline(always)]
@@ -85,11 +129,18 @@ pub(super) struct Target {
     pub(super) even: Vec<Vec<Complex>>,
     /// Indices of the few points among all.
     pub(super) chosen: Vec<usize>,
+    /// The variants that prescribed timing allows: the first, with the crank turning counter-clockwise, and the mirrored one.
+    pub(super) timed: Option<[bool; 2]>,
 }
 
 impl Target {
     /// Normalises a target of at least three points; `None` if they coincide or are not finite.
-    pub(super) fn of(points: &[Complex], closed: bool, few: usize, even: usize) -> Option<Target> {
+    pub(super) fn of(
+        (points, closed): (&[Complex], bool),
+        timing: Option<DyadChainTiming<'_>>,
+        few: usize,
+        even: usize,
+    ) -> Option<Target> {
         if points.len() < 3 || points.iter().any(|p| !(p.re.is_finite() && p.im.is_finite())) {
             return None;
         }
@@ -106,8 +157,21 @@ impl Target {
         } else {
             (0..few).map(|i| (i * (count - 1) + (few - 1) / 2) / (few - 1)).collect()
         };
-        let mut out =
-            Target { centre, radius, closed, few: Vec::new(), all: Vec::new(), even: Vec::new(), chosen };
+        // As the crank turns counter-clockwise.
+        let sense = timing.map_or(1.0, |timing| timing.sense());
+        let angles =
+            timing.map(|timing| timing.angles.iter().map(|angle| sense * angle).collect::<Vec<f64>>());
+        let timed = timing.map(|timing| [sense, -sense].map(|run| timing.runs.contains(&run)));
+        let mut out = Target {
+            centre,
+            radius,
+            closed,
+            few: Vec::new(),
+            all: Vec::new(),
+            even: Vec::new(),
+            chosen,
+            timed,
+        };
         for variant in Variant::ALL {
             let mut own: Vec<Complex> =
                 points.iter().map(|p| if variant.mirrored { p.conj() } else { *p }).collect();
@@ -117,8 +181,17 @@ impl Target {
             let (shares, length) = shares(&own, closed);
             let of_chosen: Vec<Complex> = out.chosen.iter().map(|i| own[*i]).collect();
             let shares_chosen: Vec<f64> = out.chosen.iter().map(|i| shares[*i]).collect();
-            out.few.push(Points::new(&of_chosen, &shares_chosen, length, closed));
-            out.all.push(Points::new(&own, &shares, length, closed));
+            let times = |chosen: Option<&[usize]>| {
+                let (angles, timing) = (angles.as_ref()?, timing?);
+                let own = match chosen {
+                    Some(chosen) => chosen.iter().map(|i| angles[*i]).collect(),
+                    None => angles.clone(),
+                };
+                Some((own, timing.offset))
+            };
+            let few = Points::new(&of_chosen, (&shares_chosen, length), closed, times(Some(&out.chosen)));
+            out.few.push(few);
+            out.all.push(Points::new(&own, (&shares, length), closed, times(None)));
             out.even.push(evenly(&own, &shares, closed, even));
         }
         Some(out)

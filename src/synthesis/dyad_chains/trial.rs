@@ -112,7 +112,10 @@ impl Trial {
         let n = points.count as f64;
         self.value = f64::INFINITY;
         let mut found = None;
-        if let Some(at) = self.placed(points) {
+        // Where phases depend on S, it is not linear.
+        if !points.follow_the_ground()
+            && let Some(at) = self.placed(points)
+        {
             let sizes = limits.of_sizes(&self.of, &at, bodies);
             found = Some((at, self.misfit_at(points, &at) / n, sizes));
         }
@@ -198,6 +201,9 @@ impl Trial {
     #[inline(always)]
     pub(super) fn find_excursions(&mut self, points: &Points) {
         self.excursions.clear();
+        if points.timing.as_ref().is_some_and(|times| !times.rise) {
+            return;
+        }
         let curve = self.grid.points(self.shape.kind.traced(), self.at.numbers());
         let (n, phases) = (points.count, curve[0].len());
         let step = Grid::phase(1);

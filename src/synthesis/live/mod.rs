@@ -20,7 +20,7 @@ use crate::synthesis::constants::live::{
 use crate::synthesis::multistart::{judged, polish};
 use crate::synthesis::nearest::nearest_positions;
 use crate::synthesis::{Budget, Context, plan, several_loops, sliders};
-use crate::task::Problem;
+use crate::task::{Problem, Timing};
 
 /// The candidates that follow a target. Each has a number of its own, which it keeps while it follows.
 #[derive(Clone, Debug, Default)]
@@ -151,7 +151,12 @@ fn followed(problem: &Problem, candidate: &Candidate, budget: &Budget<'_>) -> Op
         let fitted = fit.end.and_then(|end| judged(problem, &end));
         (fitted, judged(problem, &start_at(problem, &placed)?))
     } else if placed.linkage.multi_loop().is_some() {
-        let again = assess(problem, placed.linkage, &placed.crank_deg, &placed.t1_at);
+        // Angles of another timing are none of this problem.
+        let again = match problem.task().timing() {
+            Timing::Free => assess(problem, placed.linkage, &placed.crank_deg, &placed.t1_at),
+            Timing::Prescribed { .. } => nearest_positions(problem, placed.linkage)
+                .and_then(|(crank_deg, t1_at)| assess(problem, placed.linkage, &crank_deg, &t1_at)),
+        };
         (several_loops::refitted(context, &placed, EVALUATIONS).0, again)
     } else {
         let (fitted, _) = sliders::refit(context, &placed, (EFFORT, EVALUATIONS, 0.0));

@@ -35,7 +35,7 @@ pub fn record(
         measure_beside(problem, candidate);
         annotate(problem, candidate);
     }
-    let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
+    let keys: Vec<String> = snapped.lengths.iter().map(|length| length.key()).collect();
     let used = vec![format!("snap {} to {}", keys.join(", "), request.stock.words())];
     let asked = ProblemRecord::new(name.into(), source, unit, problem.spec().clone())?;
     let family = candidates.first().and_then(|best| family(problem, best));

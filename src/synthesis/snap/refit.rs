@@ -1,17 +1,22 @@
 //! Refit of a candidate with some of its dimensions fixed.
 
+use super::length::{JointName, Length};
 use crate::judge::assess::{assess, assess_again};
 use crate::judge::rank::compare;
 use crate::judge::warm::start_at;
+use crate::mechanism::dyad_chain::kinds::GROUND;
+use crate::mechanism::dyad_chain::sizes::{Side, joints};
+use crate::mechanism::multi_loop::LinkLength;
 use crate::mechanism::{
-    Complex, CrankLinkage, FourBar, InvertedSliderCrank, LinkageKind, NaturalCoordinates, SliderCrank, point,
-    xy,
+    Complex, CrankLinkage, FourBar, InvertedSliderCrank, NaturalCoordinates, SliderCrank, point, xy,
 };
 use crate::record::Candidate;
 use crate::synthesis::Context;
 use crate::synthesis::constants::sliders::LONG_FIT;
+use crate::synthesis::dyad_chains::Held;
 use crate::synthesis::multistart::judged;
 use crate::synthesis::polish::finish;
+use crate::synthesis::several_loops::refitted_holding;
 use crate::synthesis::sliders;
 use crate::task::Problem;
 use crate::task::spec::{DesignSpec, Limits};
@@ -19,80 +24,29 @@ use crate::task::spec::{DesignSpec, Limits};
 /// Relative difference up to which a length counts as equal to its fixed value.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A length of the linkage: the distance between two holes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Length {
-    /// The ground length |AB|.
-    Ground,
-    /// The crank length |AC|.
-    A,
-    /// The coupler length |CD|.
-    B,
-    /// The follower length |BD|.
-    C,
-    /// The coupler side |CP| at the crank.
-    D,
-    /// The coupler side |DP| at the follower.
-    E,
-}
-
-impl Length {
-    /// All lengths.
-    pub const ALL: [Length; 6] = [Length::Ground, Length::A, Length::B, Length::C, Length::D, Length::E];
-
-    /// Returns its key in files, its value in a linkage and its place in the design table.
-    fn entry(self) -> Entry {
-        match self {
-            Length::Ground => ("ground", CrankLinkage::ground, |design| &mut design.ground),
-            Length::A => ("a", |linkage| Some(linkage.crank()), |design| &mut design.a),
-            Length::B => ("b", CrankLinkage::coupler, |design| &mut design.b),
-            Length::C => ("c", |linkage| linkage.four_bar().map(FourBar::follower), |design| &mut design.c),
-            Length::D => ("d", |linkage| Some(linkage.crank_side()), |design| &mut design.d),
-            Length::E => ("e", CrankLinkage::second_side, |design| &mut design.e),
-        }
-    }
-
-    /// Returns its key in files.
-    pub fn key(self) -> &'static str {
-        self.entry().0
-    }
-
-    /// Returns the length with a key.
-    pub fn named(key: &str) -> Option<Length> {
-        Length::ALL.into_iter().find(|length| length.key() == key)
-    }
-
-    /// Returns its value in a linkage; `None` of a kind that has no such length.
-    pub fn of(self, linkage: impl Into<CrankLinkage>) -> Option<f64> {
-        (self.entry().1)(&linkage.into())
-    }
-
-    /// Returns the problem's limits for it; from 0 to infinity if there are none.
-    pub fn limits(self, design: &DesignSpec) -> Limits {
-        self.place(&mut design.clone()).unwrap_or(Limits(0.0, f64::INFINITY))
-    }
-
-    fn place(self, design: &mut DesignSpec) -> &mut Option<Limits> {
-        (self.entry().2)(design)
-    }
-}
-
-type Entry = (&'static str, fn(&CrankLinkage) -> Option<f64>, fn(&mut DesignSpec) -> &mut Option<Limits>);
-
 /// The dimensions that are fixed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fixed {
-    /// Hole distances, each at most once.
+    /// Hole distances, each at most once; of a six-bar or an eight-bar those of [`Length::all`].
     pub lengths: Vec<(Length, f64)>,
     /// The crank's pivot A.
     pub crank_pivot: Option<[f64; 2]>,
     /// The follower's pivot B.
     pub follower_pivot: Option<[f64; 2]>,
+    /// The fixed pivots of a six-bar or an eight-bar beside these two.
+    pub further_pivots: Vec<(JointName, [f64; 2])>,
     /// The direction from A to B, degrees.
     pub ground_angle_deg: Option<f64>,
 }
 
 impl Fixed {
+    /// Returns the pivots that are fixed, by name.
+    pub fn pivots(&self) -> Vec<(&'static str, Complex)> {
+        let named = [("A", self.crank_pivot), ("B", self.follower_pivot)];
+        let first = named.into_iter().filter_map(|(name, at)| Some((name, point(at?))));
+        first.chain(self.further_pivots.iter().map(|(joint, at)| (joint.name(), point(*at)))).collect()
+    }
+
     /// Returns the value at which a length is fixed.
     pub fn get(&self, length: Length) -> Option<f64> {
         self.lengths.iter().find(|(one, _)| *one == length).map(|(_, value)| *value)
@@ -126,7 +80,9 @@ impl Fixed {
         fixed.follower_pivot = self.follower_pivot.map(both).or(fixed.follower_pivot);
         fixed.ground_angle_deg = self.ground_angle_deg.map(at).or(fixed.ground_angle_deg);
         for &(length, value) in &self.lengths {
-            *length.place(&mut fixed) = Some(at(value));
+            if let Some(limits) = length.place(&mut fixed) {
+                *limits = Some(at(value));
+            }
         }
         if self.get(Length::D).is_some() || self.get(Length::E).is_some() {
             // d and e are the coordinates; the problem's limits of coupler_x and coupler_y are left to the referee.
@@ -148,8 +104,12 @@ pub fn refit(
     evaluations: u64,
 ) -> (Option<Candidate>, u64) {
     let problem = context.problem;
-    if candidate.linkage.kind() != LinkageKind::FourBar {
-        return fit_slider(context, candidate, fixed, evaluations);
+    match candidate.linkage {
+        CrankLinkage::FourBar(_) => {}
+        CrankLinkage::MultiLoop(_) => return fit_several_loops(context, candidate, fixed, evaluations),
+        CrankLinkage::SliderCrank(_) | CrankLinkage::InvertedSliderCrank(_) => {
+            return fit_slider(context, candidate, fixed, evaluations);
+        }
     }
     let design = &problem.spec().design;
     let ground = fixed.get(Length::Ground).is_some() || fixed.ground_angle_deg.is_some();
@@ -203,6 +163,49 @@ fn fit(
         assess(problem, linkage, &found.crank_deg, &found.t1_at)
     });
     (found, fitted.evaluations)
+}
+
+/// As [`refit`] of a six-bar or an eight-bar.
+fn fit_several_loops(
+    context: Context<'_>,
+    candidate: &Candidate,
+    fixed: &Fixed,
+    evaluations: u64,
+) -> (Option<Candidate>, u64) {
+    let Some(linkage) = candidate.linkage.multi_loop() else { return (None, 0) };
+    let kind = linkage.chain_kind();
+    // The joints of a body stand in one order in the linkage and in its chain.
+    let joint = |body: usize, place: usize| joints(kind, body)[place];
+    let mut held = Vec::new();
+    for &(length, value) in &fixed.lengths {
+        let Some(LinkLength { body, places, .. }) = length.of_several(linkage) else { return (None, 0) };
+        held.push(Held::Length(Side { body, joints: places.map(|place| joint(body, place)) }, value));
+    }
+    let ground = linkage.named_pivots();
+    for (name, at) in fixed.pivots() {
+        let Some(place) = ground.iter().position(|(own, _)| *own == name) else { return (None, 0) };
+        held.push(Held::Pivot(joint(GROUND, place), at));
+    }
+    held.extend(fixed.ground_angle_deg.map(|deg| Held::Direction(deg.to_radians())));
+    let (end, used) = refitted_holding(context, candidate, &held, evaluations);
+    let found = end.and_then(|found| {
+        let linkage = several_loops_to_the_digit(&found.linkage, fixed)?;
+        assess_again(context.problem, &Candidate { linkage, ..found })
+    });
+    (found, used)
+}
+
+/// Returns a linkage of several loops with its fixed dimensions at exactly their values. `None` if they are off by more than the rounding
+/// of a fit.
+fn several_loops_to_the_digit(linkage: &CrankLinkage, fixed: &Fixed) -> Option<CrankLinkage> {
+    if !are_near(linkage, fixed) {
+        return None;
+    }
+    let of = linkage.multi_loop()?;
+    let lengths: Option<Vec<_>> =
+        fixed.lengths.iter().map(|(length, value)| Some((length.of_several(of)?, *value))).collect();
+    let made = of.holding(&lengths?, &fixed.pivots(), fixed.ground_angle_deg.map(f64::to_radians))?;
+    Some(CrankLinkage::MultiLoop(made))
 }
 
 /// As [`refit`] of a linkage with a slider.
@@ -307,6 +310,7 @@ fn to_the_digit(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
             Length::C => n.follower = value,
             Length::D => n.crank_side = value,
             Length::E => n.follower_side = value,
+            Length::Of(..) => return None,
             Length::Ground => {
                 let (a, b) = (point(n.crank_pivot), point(n.follower_pivot));
                 let long = (b - a).norm();

@@ -1,6 +1,7 @@
 //! Search for a combination of stock lengths: a beam search over the lengths, then a local search from the best.
 
-use super::refit::{Fixed, Length, refit};
+use super::length::Length;
+use super::refit::{Fixed, refit};
 use super::stock::Stock;
 use crate::judge::practicality::sensitivity_of;
 use crate::judge::rank::compare;
@@ -37,7 +38,7 @@ pub enum SnapError {
     )]
     NoStock {
         /// Key of the length.
-        key: &'static str,
+        key: String,
         /// The stock, in words.
         stock: String,
         /// Its least value allowed.
@@ -102,13 +103,13 @@ pub fn snap(context: Context<'_>, candidate: &Candidate, request: &Request) -> R
         return Err(SnapError::NothingToSnap);
     }
     let near = |length: Length, at: &Candidate, count: usize| {
-        let Limits(low, high) = length.limits(design);
+        let Limits(low, high) = length.limits(design, &candidate.linkage);
         request.stock.near(length.of(at.linkage).unwrap_or(f64::NAN), count, low, high)
     };
     let mut plain = request.fixed.clone();
     for &length in &lengths {
         let Some(&value) = near(length, candidate, 1).first() else {
-            let Limits(low, high) = length.limits(design);
+            let Limits(low, high) = length.limits(design, &candidate.linkage);
             return Err(SnapError::NoStock { key: length.key(), stock: request.stock.words(), low, high });
         };
         plain = plain.with(length, value);
@@ -195,19 +196,28 @@ fn to_snap(problem: &Problem, candidate: &Candidate, request: &Request) -> Vec<L
     let whole = |p: Option<[Limits; 2]>| p.is_some_and(|p| p.iter().all(Limits::is_fixed));
     let both_pivots = (request.fixed.crank_pivot.is_some() || whole(design.crank_pivot))
         && (request.fixed.follower_pivot.is_some() || whole(design.follower_pivot));
+    let kept: Vec<&str> = request.fixed.pivots().into_iter().map(|(name, _)| name).collect();
     let free = |length: &Length| {
         length.of(candidate.linkage).is_some()
             && request.fixed.get(*length).is_none()
-            && !length.limits(design).is_fixed()
+            && !length.limits(design, &candidate.linkage).is_fixed()
             && !(*length == Length::Ground && both_pivots)
+            && !length.lies_between(&kept)
     };
+    let all = Length::all(&candidate.linkage).into_iter();
     let mut lengths: Vec<Length> =
-        Length::ALL.into_iter().filter(|length| request.lengths.contains(length)).filter(free).collect();
+        all.filter(|length| request.lengths.contains(length)).filter(free).collect();
     if let Some(felt) = sensitivity_of(problem, candidate) {
         let of = |length: &Length| match length {
             Length::Ground => felt.ground.as_ref().map_or(0.0, |ground| ground.rms),
-            // d and e each count as both if the coupler point is measured along and across.
-            _ => felt.dimensions.iter().find(|d| d.name == length.key()).map_or(f64::INFINITY, |d| d.rms),
+            // d and e, and the sides of ternary links, each count as both places along and across.
+            _ => {
+                let rms = |name: String| felt.dimensions.iter().find(|d| d.name == name).map(|d| d.rms);
+                let joint = length.last_joint();
+                let of_place = ["x", "y"].map(|axis| rms(format!("{joint}{axis}")));
+                let of_several = of_place.into_iter().flatten().reduce(f64::max);
+                rms(length.key()).or(of_several).unwrap_or(f64::INFINITY)
+            }
         };
         lengths.sort_by(|x, y| of(y).total_cmp(&of(x)));
     }
@@ -228,7 +238,7 @@ fn neighbours(choice: &Choice, lengths: &[Length], stock: &Stock, design: &Desig
         .flat_map(|&length| {
             let at =
                 choice.fixed.get(length).or_else(|| length.of(choice.candidate.linkage)).unwrap_or(f64::NAN);
-            let Limits(low, high) = length.limits(design);
+            let Limits(low, high) = length.limits(design, &choice.candidate.linkage);
             let near = stock.near(at, NEAR, low, high);
             let up = near.iter().copied().filter(|v| *v > at).fold(f64::INFINITY, f64::min);
             let down = near.iter().copied().filter(|v| *v < at).fold(f64::NEG_INFINITY, f64::max);
