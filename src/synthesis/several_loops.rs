@@ -83,11 +83,7 @@ pub(super) fn refitted_holding(
     let chain = from.linkage.multi_loop().and_then(MultiLoop::to_dyad_chain);
     let Some((chain, kind)) = chain.zip(from.linkage.kind().dyads()) else { return (None, 0) };
     let (points, kinds) = (points(problem, false), DyadChainKind::all(kind));
-    let request = Request {
-        points: &points,
-        timing: timing(problem, points.len()),
-        ..request(problem, &kinds, evaluations)
-    };
+    let request = request(problem, &points, &kinds, evaluations);
     let ground = chain.ground_angle();
     let phases: Vec<f64> =
         from.crank_deg.iter().take(points.len()).map(|deg| deg.to_radians() - ground).collect();
@@ -98,11 +94,16 @@ pub(super) fn refitted_holding(
     }
 }
 
-/// Returns the request of a problem without its points.
-fn request<'a>(problem: &Problem, kinds: &'a [DyadChainKind], evaluations: u64) -> Request<'a> {
+/// Returns the request of a problem for these of its points.
+fn request<'a>(
+    problem: &'a Problem,
+    points: &'a [Complex],
+    kinds: &'a [DyadChainKind],
+    evaluations: u64,
+) -> Request<'a> {
     Request {
-        points: &[],
-        timing: None,
+        points,
+        timing: timing(problem, points.len()),
         closed: problem.task().closed(),
         counter_clockwise: problem.spec().require.direction != DirectionPolicy::Any,
         kinds,
@@ -157,8 +158,7 @@ fn search_until(context: Context<'_>, kind: LinkageKind, limit: u64, enough: f64
     let clockwise =
         problem.spec().require.direction == DirectionPolicy::Cw && *problem.task().timing() == Timing::Free;
     let points = points(problem, clockwise);
-    let timing = timing(problem, points.len());
-    let request = Request { points: &points, timing, enough, ..request(problem, &kinds, limit) };
+    let request = Request { enough, ..request(problem, &points, &kinds, limit) };
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().dyad_chains.get(&kind).cloned());
     let observer = |now: &DyadChainProgress| {
         let sum_sq = now.best_rms * now.best_rms * points.len() as f64;

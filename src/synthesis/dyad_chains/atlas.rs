@@ -25,7 +25,8 @@ const ARC_SHARE: (f64, f64) = (0.15, 0.95);
 /// A chain may be longer than the limit by this factor before it is fitted.
 pub(super) const TOO_LONG: f64 = 2.0;
 
-/// A start of a fit: a chain, in the frame A = 0, B = 1 unless the timing is prescribed, and where a variant of the target begins on it.
+/// A start of a fit: a chain, and where a variant of the target begins on it. With free timing the chain stands in the frame A = 0,
+/// B = 1.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
     pub(super) chain: DyadChain,
@@ -53,16 +54,16 @@ impl Start {
 
 /// The number of a draw and of one of its arcs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Kept {
-    pub(super) score: f64,
-    pub(super) stream: u64,
-    pub(super) place: usize,
-    pub(super) arc: usize,
-    pub(super) variant: Variant,
+struct Kept {
+    score: f64,
+    stream: u64,
+    place: usize,
+    arc: usize,
+    variant: Variant,
 }
 
 /// Returns the best `most`, the best first; of equal ones the first drawn.
-pub(super) fn best_of(mut kept: Vec<Kept>, most: usize) -> Vec<Kept> {
+fn best_of(mut kept: Vec<Kept>, most: usize) -> Vec<Kept> {
     let key = |kept: &Kept| (kept.stream, kept.place, kept.arc);
     kept.sort_by(|a, b| b.score.total_cmp(&a.score).then(key(a).cmp(&key(b))));
     kept.truncate(most);

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 /// Phases at which a curve is sampled.
-const TRACED: usize = 128;
+pub(super) const TRACED: usize = 128;
 /// Points at equal arcs.
 pub(super) const EVEN: usize = 64;
 /// Harmonics of each sign.
@@ -43,99 +43,43 @@ fn cranks() -> &'static [ComplexLanes; TRACED / LANES] {
     })
 }
 
-/// Offsets of prescribed phases that are tried, and the samples between two of them.
-pub(super) const OFFSETS: usize = 32;
-const BETWEEN: usize = TRACED / OFFSETS;
-
-/// The frame (o, v) of the link that carries P at evenly spaced phases: x and y of o, then of v, twice around; every
-/// `BETWEEN`-th sample stands together.
-pub(super) struct TracedFrames {
-    samples: [[[f64; 2 * OFFSETS]; BETWEEN]; 4],
-}
-
-/// A phase between two samples.
-pub(super) struct TracedPlace {
-    sample: usize,
-    part: f64,
-}
-
-impl TracedPlace {
-    /// Returns the place of a phase.
-    pub(super) fn of(phase: f64) -> Self {
-        let place = (phase / TAU).rem_euclid(1.0) * TRACED as f64;
-        let sample = (place as usize).min(TRACED - 1);
-        TracedPlace { sample, part: place - sample as f64 }
+/// Calls `put` with the place of a sample, and with o and v of the link that carries P there, for eight samples at a time; returns the
+/// proportions of the chain.
+#[inline(always)]
+pub(super) fn sampled(
+    drawn: &Drawn,
+    grid: &mut Grid,
+    mut put: impl FnMut(usize, ComplexLanes, ComplexLanes),
+) -> Proportions {
+    let of = drawn.shape.resolve(grid);
+    let mut frames = Frames::<F64x8>::of(ComplexLanes::ZERO);
+    let body = of.kind.traced();
+    for (block, e) in cranks().iter().enumerate() {
+        frames.along[CRANK] = *e;
+        frames.assemble_all(&of);
+        put(LANES * block, frames.origin[body], frames.along[body]);
     }
-}
-
-impl TracedFrames {
-    /// Samples a chain in the frame A = 0, B = 1; `None` if a number is not finite.
-    pub(super) fn of(drawn: &Drawn, grid: &mut Grid) -> Option<(TracedFrames, Proportions)> {
-        let mut flat = [[0.0; TRACED]; 4];
-        let of = vectorised(
-            #[inline(always)]
-            || {
-                let of = drawn.shape.resolve(grid);
-                let mut frames = Frames::<F64x8>::of(ComplexLanes::ZERO);
-                let body = of.kind.traced();
-                for (block, e) in cranks().iter().enumerate() {
-                    frames.along[CRANK] = *e;
-                    frames.assemble_all(&of);
-                    let (o, v) = (frames.origin[body], frames.along[body]);
-                    for (to, x) in flat.iter_mut().zip([o.re, o.im, v.re, v.im]) {
-                        x.store(to, LANES * block);
-                    }
-                }
-                of
-            },
-        );
-        if !flat.iter().flatten().all(|x| x.is_finite()) {
-            return None;
-        }
-        let mut samples = [[[0.0; 2 * OFFSETS]; BETWEEN]; 4];
-        for (samples, flat) in samples.iter_mut().zip(&flat) {
-            for (i, x) in flat.iter().enumerate() {
-                let own = &mut samples[i % BETWEEN];
-                (own[i / BETWEEN], own[i / BETWEEN + OFFSETS]) = (*x, *x);
-            }
-        }
-        Some((TracedFrames { samples }, of))
-    }
-
-    /// Returns x and y of o and of v at a phase and all offsets, between two samples in proportion.
-    #[inline(always)]
-    pub(super) fn around(&self, at: &TracedPlace) -> [[f64; OFFSETS]; 4] {
-        let next = at.sample + 1;
-        let mut out = [[0.0; OFFSETS]; 4];
-        for (out, samples) in out.iter_mut().zip(&self.samples) {
-            let from = &samples[at.sample % BETWEEN][at.sample / BETWEEN..][..OFFSETS];
-            let to = &samples[next % BETWEEN][next / BETWEEN..][..OFFSETS];
-            for k in 0..OFFSETS {
-                out[k] = from[k] + (to[k] - from[k]) * at.part;
-            }
-        }
-        out
-    }
+    of
 }
 
 impl Curve {
     /// Samples the curve of a chain in the frame A = 0, B = 1; `None` if it has no length.
     pub(super) fn of(drawn: &Drawn, grid: &mut Grid) -> Option<(Curve, Proportions)> {
         let mut points = [[0.0; TRACED]; 2];
+        let z = ComplexLanes::splat(drawn.place);
         let of = vectorised(
             #[inline(always)]
             || {
-                let of = drawn.shape.resolve(grid);
-                let mut frames = Frames::<F64x8>::of(ComplexLanes::ZERO);
-                let (z, body) = (ComplexLanes::splat(drawn.place), of.kind.traced());
-                for (block, e) in cranks().iter().enumerate() {
-                    frames.along[CRANK] = *e;
-                    frames.assemble_all(&of);
-                    let p = frames.origin[body] + z * frames.along[body];
-                    p.re.store(&mut points[0], LANES * block);
-                    p.im.store(&mut points[1], LANES * block);
-                }
-                of
+                sampled(
+                    drawn,
+                    grid,
+                    #[inline(always)]
+                    |at, o, v| {
+                        let p = o + z * v;
+                        p.re.store(&mut points[0], at);
+                        p.im.store(&mut points[1], at);
+                    },
+                )
             },
         );
         let mut along = [0.0; TRACED + 1];

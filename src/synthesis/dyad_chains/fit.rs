@@ -8,18 +8,20 @@
 //! tau = -<g, r + J dx> / (|g|^2 + lt),   lt = min(lambda, 1) mean |g|^2
 //! ```
 //!
-//! (derived here: a Schur complement.) Of prescribed phases only a common offset is an unknown, if that is free, and eliminated
-//! likewise; where they count from the x axis they fall as S turns. After each step the phases are projected onto the nearest sequence in order, and
-//! T, S, Z are solved anew unless a limit of size is active or phases depend on S; a step is kept if the sum of squares falls. Hinges hold the
+//! (derived here: a Schur complement.) After each step the phases are projected onto the nearest sequence in order, and
+//! T, S, Z are solved anew unless a limit of size is active; a step is kept if the sum of squares falls. Hinges hold the
 //! transmission angles, the lengths, and the curve between two neighbouring points.
+//!
+//! Of prescribed phases only a common offset is an unknown, if that is free, and is eliminated likewise; they have no order to
+//! be projected onto. Where they count from the x axis they fall as S turns, so that S is a step's and not solved anew.
 
 use super::constants::HELD_STEPS;
 use super::held::AllHeld;
 use super::limits::{Bodies, Limits};
-use super::normal_equations::{MAX_COLUMNS, Matrix, gram, solve};
+use super::normal_equations::{MAX_COLUMNS, Matrix, add, gram, solve};
 use super::order::Order;
 use super::rows::Rows;
-use super::target::Points;
+use super::target::{Points, Times};
 use super::trial::Trial;
 use crate::mechanism::dyad_chain::{DyadChain, DyadChainKind, Frames, Placement};
 use crate::numbers::arithmetic::Complex;
@@ -73,6 +75,12 @@ pub(super) enum Linear {
     Unknown,
     /// They are kept where a limit of size is active.
     Known,
+}
+
+/// The elimination of the common offset of prescribed phases: tau = -along . (dx, 1) / whole.
+struct CommonOffset {
+    along: [f64; MAX_COLUMNS],
+    whole: f64,
 }
 
 /// Buffers of fits, of one thread.
@@ -236,6 +244,20 @@ impl Fitter {
         Placement { origin: at.origin + step(0), ground: at.ground + step(2), pointer: at.pointer + step(4) }
     }
 
+    /// Returns the sums of all rows along the common offset of prescribed phases, by which it is eliminated; zeros where it is none.
+    fn common_offset(&self, points: &Points, times: &Times, damping: f64) -> CommonOffset {
+        let (speeds, tangent) = (&self.rows.speed_sq[..points.count], &self.rows.tangent);
+        let whole = speeds.iter().sum::<f64>() * (1.0 + damping.min(1.0)) + f64::MIN_POSITIVE;
+        let mut along = [0.0; MAX_COLUMNS];
+        if times.offset == AngleOffset::Free {
+            let rows = tangent.chunks_exact(points.mask.len());
+            for (along, own) in along.iter_mut().zip(rows).take(self.now.shape.count() + 7) {
+                *along = own.iter().zip(speeds).map(|(entry, speed)| entry * speed.sqrt()).sum();
+            }
+        }
+        CommonOffset { along, whole }
+    }
+
     /// Solves for the step of the unknowns and of the phases; returns whether there is one.
     #[inline(always)]
     fn solve(&mut self, points: &Points, damping: f64) -> bool {
@@ -256,28 +278,16 @@ impl Fitter {
             }
         }
         gram(&self.weighted, padded, columns, &mut self.moving);
-        // The common offset of prescribed phases is eliminated: the part of all rows along it.
-        let mut along = [0.0; MAX_COLUMNS];
-        let whole: f64 =
-            speeds[..points.count].iter().sum::<f64>() * (1.0 + damping.min(1.0)) + f64::MIN_POSITIVE;
-        let is_offset_free = points.timing.as_ref().is_some_and(|times| times.offset == AngleOffset::Free);
-        if is_offset_free {
-            for (column, along) in along.iter_mut().enumerate().take(columns) {
-                let own = &tangent[column * padded..column * padded + points.count];
-                *along = own.iter().zip(speeds).map(|(entry, speed)| entry * speed.sqrt()).sum();
-            }
-            for (row, one) in self.moving.iter_mut().zip(&along).take(columns) {
-                for (entry, other) in row.iter_mut().zip(&along).take(columns) {
+        let offset = points.timing.as_ref().map(|times| self.common_offset(points, times, damping));
+        if let Some(CommonOffset { along, whole }) = &offset {
+            for (row, one) in self.moving.iter_mut().zip(along).take(columns) {
+                for (entry, other) in row.iter_mut().zip(along).take(columns) {
                     *entry -= one * other / whole;
                 }
             }
         }
         let mut matrix = *self.rows.fixed;
-        for (row, other) in matrix.iter_mut().zip(self.moving.iter()).take(columns) {
-            for (a, b) in row.iter_mut().zip(other).take(columns) {
-                *a += b;
-            }
-        }
+        add(&mut matrix, &self.moving, columns);
         for (k, row) in matrix.iter_mut().enumerate().take(unknowns) {
             // S is as little linear as the shape is where phases depend on it.
             let is_damped = k < count || (points.follow_the_ground() && (count + 2..count + 4).contains(&k));
@@ -289,11 +299,7 @@ impl Fitter {
         }
         if !self.bodies.held.is_empty() {
             // Not damped: beside their weights nothing else would move.
-            for (row, other) in matrix.iter_mut().zip(self.rows.held.iter()).take(columns) {
-                for (a, b) in row.iter_mut().zip(other).take(columns) {
-                    *a += b;
-                }
-            }
+            add(&mut matrix, &self.rows.held, columns);
         }
         if !solve(&mut matrix, unknowns, &mut self.step) {
             return false;
@@ -307,7 +313,7 @@ impl Fitter {
             self.step[..unknowns].iter_mut().for_each(|x| *x *= factor);
         }
         self.step[unknowns] = 1.0;
-        if points.timing.is_some() {
+        if let Some(CommonOffset { along, whole }) = offset {
             let sum: f64 = along.iter().zip(&self.step).take(columns).map(|(a, b)| a * b).sum();
             self.tau.fill(-sum / whole);
             return true;

@@ -39,6 +39,16 @@ pub(super) fn gram(rows: &[f64], length: usize, columns: usize, out: &mut Matrix
     }
 }
 
+/// Adds the products of other columns.
+#[inline(always)]
+pub(super) fn add(out: &mut Matrix, other: &Matrix, columns: usize) {
+    for (row, other) in out.iter_mut().zip(other).take(columns) {
+        for (a, b) in row.iter_mut().zip(other).take(columns) {
+            *a += b;
+        }
+    }
+}
+
 /// Adds `weight` times the square of a row.
 #[inline(always)]
 pub(super) fn add_square(out: &mut Matrix, row: &[f64; MAX_COLUMNS], columns: usize, weight: f64) {

@@ -4,12 +4,12 @@
 //! each of a few offsets of the phases the least squares of three complex numbers remain (of the real s in S = s e^{-i omega},
 //! where phases count from the x axis; derived here).
 
-use super::atlas::{Atlas, CHUNK, Kept, Start, TOO_LONG, best_of, longest};
-use super::curve::{OFFSETS, TracedFrames, TracedPlace};
-use super::draw::drawn;
+use super::atlas::{Atlas, CHUNK, Start, TOO_LONG, longest};
+use super::curve::{TRACED, sampled};
+use super::draw::{Drawn, drawn};
 use super::target::{Target, Variant};
 use crate::mechanism::dyad_chain::sizes::{Side, sides};
-use crate::mechanism::dyad_chain::{DyadChain, Grid, Placement};
+use crate::mechanism::dyad_chain::{DyadChain, Grid, Placement, Proportions};
 use crate::numbers::arithmetic::Complex;
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::streams::stream;
@@ -17,10 +17,82 @@ use crate::task::AngleOffset;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
+/// Offsets of prescribed phases that are tried, and the samples between two of them.
+const OFFSETS: usize = 32;
+const BETWEEN: usize = TRACED / OFFSETS;
 /// The most points that a draw is compared at.
 const COMPARED: usize = 24;
 /// Share of the product of both variances below which o and v are too nearly proportional.
 const INDEPENDENT: f64 = 1e-9;
+
+/// The frame (o, v) of the link that carries P at evenly spaced phases: x and y of o, then of v, twice around; every
+/// `BETWEEN`-th sample stands together.
+struct TracedFrames {
+    samples: [[[f64; 2 * OFFSETS]; BETWEEN]; 4],
+}
+
+/// A phase between two samples.
+struct TracedPlace {
+    sample: usize,
+    part: f64,
+}
+
+impl TracedPlace {
+    /// Returns the place of a phase.
+    fn of(phase: f64) -> Self {
+        let place = (phase / TAU).rem_euclid(1.0) * TRACED as f64;
+        let sample = (place as usize).min(TRACED - 1);
+        TracedPlace { sample, part: place - sample as f64 }
+    }
+}
+
+impl TracedFrames {
+    /// Samples a chain in the frame A = 0, B = 1; `None` if a number is not finite.
+    fn of(drawn: &Drawn, grid: &mut Grid) -> Option<(TracedFrames, Proportions)> {
+        let mut flat = [[0.0; TRACED]; 4];
+        let of = vectorised(
+            #[inline(always)]
+            || {
+                sampled(
+                    drawn,
+                    grid,
+                    #[inline(always)]
+                    |at, o, v| {
+                        for (to, x) in flat.iter_mut().zip([o.re, o.im, v.re, v.im]) {
+                            x.store(to, at);
+                        }
+                    },
+                )
+            },
+        );
+        if !flat.iter().flatten().all(|x| x.is_finite()) {
+            return None;
+        }
+        let mut samples = [[[0.0; 2 * OFFSETS]; BETWEEN]; 4];
+        for (samples, flat) in samples.iter_mut().zip(&flat) {
+            for (i, x) in flat.iter().enumerate() {
+                let own = &mut samples[i % BETWEEN];
+                (own[i / BETWEEN], own[i / BETWEEN + OFFSETS]) = (*x, *x);
+            }
+        }
+        Some((TracedFrames { samples }, of))
+    }
+
+    /// Returns x and y of o and of v at a phase and all offsets, between two samples in proportion.
+    #[inline(always)]
+    fn around(&self, at: &TracedPlace) -> [[f64; OFFSETS]; 4] {
+        let next = at.sample + 1;
+        let mut out = [[0.0; OFFSETS]; 4];
+        for (out, samples) in out.iter_mut().zip(&self.samples) {
+            let from = &samples[at.sample % BETWEEN][at.sample / BETWEEN..][..OFFSETS];
+            let to = &samples[next % BETWEEN][next / BETWEEN..][..OFFSETS];
+            for k in 0..OFFSETS {
+                out[k] = from[k] + (to[k] - from[k]) * at.part;
+            }
+        }
+        out
+    }
+}
 
 /// A number at each offset of the phases.
 type AtOffsets = [f64; OFFSETS];
@@ -146,58 +218,67 @@ fn offset(k: usize) -> f64 {
     TAU * k as f64 / OFFSETS as f64
 }
 
+/// Returns the best `most`, the best first; of equal ones the first drawn.
+fn best_of(mut starts: Vec<Start>, most: usize) -> Vec<Start> {
+    starts.sort_by(|a, b| b.score.total_cmp(&a.score));
+    starts.truncate(most);
+    starts
+}
+
 impl Atlas<'_> {
     /// Returns the best `most` starts with prescribed phases, the best first.
     pub(super) fn timed_starts(&self, target: &Target, most: usize) -> Vec<Start> {
+        let times = target.few[0].timing.as_ref();
+        let (Some(compared), Some(times)) = (Compared::of(target), times) else { return Vec::new() };
         let sides: Vec<Vec<Side>> = self.kinds.iter().map(|kind| sides(*kind)).collect();
-        let chunks: Vec<Vec<(Kept, Start)>> = (0..self.streams())
+        let chunks: Vec<Vec<Start>> = (0..self.streams())
             .into_par_iter()
-            .map(|chunk| self.timed(self.stream + chunk, target, &sides, most))
+            .map(|chunk| {
+                let draws = &mut stream(self.seed, self.stream + chunk);
+                let mut grid = Grid::default();
+                let starts = (0..CHUNK).filter_map(|place| {
+                    let kind = self.kinds[place % self.kinds.len()];
+                    let drawn = drawn(kind, draws, self.limits.cosine, &mut grid);
+                    let sides = &sides[place % self.kinds.len()];
+                    self.timed(&drawn, &mut grid, (target, &compared, times.offset), sides)
+                });
+                best_of(starts.collect(), most)
+            })
             .collect();
-        let mut starts: Vec<(Kept, Start)> = chunks.into_iter().flatten().collect();
-        // Stable: of equal ones the first drawn.
-        starts.sort_by(|(a, _), (b, _)| b.score.total_cmp(&a.score));
-        starts.truncate(most);
-        starts.into_iter().map(|(_, start)| start).collect()
+        best_of(chunks.into_iter().flatten().collect(), most)
     }
 
-    /// Returns the best starts of a stream.
-    fn timed(&self, index: u64, target: &Target, sides: &[Vec<Side>], most: usize) -> Vec<(Kept, Start)> {
-        let draws = &mut stream(self.seed, index);
-        let mut grid = Grid::default();
-        let mut found: Vec<(Kept, Start)> = Vec::new();
-        let times = target.few[0].timing.as_ref();
-        let (Some(compared), Some(times)) = (Compared::of(target), times) else { return found };
-        let offsets = if times.offset == AngleOffset::Ground { 1 } else { OFFSETS };
-        for place in 0..CHUNK {
-            let drawn = drawn(self.kinds[place % self.kinds.len()], draws, self.limits.cosine, &mut grid);
-            let Some((frames, of)) = TracedFrames::of(&drawn, &mut grid) else { continue };
-            let sums = vectorised(
-                #[inline(always)]
-                || Sums::of(&frames, &compared),
-            );
-            let mut best: Option<(Kept, Start)> = None;
-            for (mirrored, allowed) in [false, true].into_iter().zip(target.timed.unwrap_or_default()) {
-                let variant = Variant { reversed: false, mirrored };
-                for arc in (0..offsets).filter(|_| allowed) {
-                    let fitted = sums.fitted(&compared, arc, usize::from(mirrored), times.offset);
-                    let Some((score, at)) = fitted else { continue };
-                    if best.as_ref().is_some_and(|(kept, _)| kept.score >= score) {
-                        continue;
-                    }
-                    let own = longest(&of, at.pointer / at.ground, &sides[place % sides.len()]);
-                    if own * at.ground.norm() <= TOO_LONG * self.limits.longest.exp() {
-                        let kept = Kept { score, stream: index, place, arc, variant };
-                        let chain = DyadChain { shape: drawn.shape, placement: at };
-                        best = Some((kept, Start { chain, variant, score, along: vec![offset(arc)] }));
-                    }
+    /// Returns the best start of a draw; `None` where it has none that is short enough.
+    fn timed(
+        &self,
+        drawn: &Drawn,
+        grid: &mut Grid,
+        (target, compared, from): (&Target, &Compared, AngleOffset),
+        sides: &[Side],
+    ) -> Option<Start> {
+        let (frames, of) = TracedFrames::of(drawn, grid)?;
+        let sums = vectorised(
+            #[inline(always)]
+            || Sums::of(&frames, compared),
+        );
+        let offsets = if from == AngleOffset::Ground { 1 } else { OFFSETS };
+        let mut best: Option<Start> = None;
+        for (mirrored, allowed) in [false, true].into_iter().zip(target.timed.unwrap_or_default()) {
+            for k in (0..offsets).filter(|_| allowed) {
+                let Some((score, at)) = sums.fitted(compared, k, usize::from(mirrored), from) else {
+                    continue;
+                };
+                if best.as_ref().is_some_and(|best| best.score >= score) {
+                    continue;
+                }
+                let own = longest(&of, at.pointer / at.ground, sides);
+                if own * at.ground.norm() <= TOO_LONG * self.limits.longest.exp() {
+                    let chain = DyadChain { shape: drawn.shape, placement: at };
+                    let variant = Variant { reversed: false, mirrored };
+                    best = Some(Start { chain, variant, score, along: vec![offset(k)] });
                 }
             }
-            found.extend(best);
         }
-        let kept = best_of(found.iter().map(|(kept, _)| *kept).collect(), most);
-        let is_kept = |own: &Kept| kept.iter().any(|kept| kept.place == own.place);
-        found.retain(|(own, _)| is_kept(own));
-        found
+        best
     }
 }
