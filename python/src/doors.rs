@@ -11,7 +11,7 @@ use crate::{pools, values};
 use linkwright::internals::app::comparison::{self, NotCompared, Target};
 use linkwright::internals::app::inputs::{self, Given};
 use linkwright::internals::app::snapping::{
-    KEPT, Subject as Snapping, fixed, pitches as read_pitches, to_snap,
+    NoKey, Subject as Snapping, fixed, kept_key, length_key, pitches as read_pitches, set_key, to_snap,
 };
 use linkwright::internals::app::suite::choice::{chosen, collection};
 use linkwright::internals::app::suite::{Options as SuiteOptions, Step, suite as run_suite};
@@ -34,7 +34,7 @@ use linkwright::internals::report::mechanism_text::{mechanism_csv, mechanism_tab
 use linkwright::internals::report::snap::snap_text;
 use linkwright::internals::report::suite::{suite_markdown, suite_text};
 use linkwright::internals::synthesis::snap::{
-    Length, Request as SnapRequest, Stock, record as snap_record, snap as snapped,
+    Request as SnapRequest, Stock, record as snap_record, snap as snapped,
 };
 use linkwright::internals::synthesis::{Budget, Context};
 use linkwright::internals::task::spec::CertifySpec;
@@ -291,25 +291,14 @@ pub fn snap<'py>(
             (None, None, Some(file)) => read_pitches(file).map_err(refused)?,
             _ => return Err(refused("give the stock: one of grid, lengths and pitches")),
         };
-        let named = |key: &String| {
-            Length::named(key)
-                .ok_or_else(|| refused(format!("{key}: a hole distance is one of ground, a, b, c, d, e, or of a six-bar two joints, such as X2F2")))
-        };
+        let of_key = |key: &str, why: NoKey| refused(format!("{key}: {why}"));
+        let named = |key: &String| length_key(key).map_err(|why| of_key(key, why));
         let asked = snap.map(|snap| snap.iter().map(named).collect::<PyResult<Vec<_>>>()).transpose()?;
-        if let Some(key) =
-            keep.iter().find(|key| Length::named(key).is_none() && !KEPT.contains(&key.as_str()))
-        {
-            return Err(refused(format!(
-                "{key}: what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg, or of a six-bar two joints, such as X2F2, or its third pivot"
-            )));
+        for key in &keep {
+            kept_key(key).map_err(|why| of_key(key, why))?;
         }
         for (key, value) in &set {
-            let length = Length::named(key).is_some();
-            if !length && key != "ground_angle_deg" {
-                return Err(refused(format!(
-                    "{key}: what can be set is one of ground, a, b, c, d, e, ground_angle_deg, or of a six-bar two joints, such as X2F2"
-                )));
-            }
+            let length = set_key(key).map_err(|why| of_key(key, why))?;
             if !value.is_finite() || (length && *value <= 0.0) {
                 return Err(refused(format!("{key} = {value}: a number above 0 is needed")));
             }

@@ -14,6 +14,55 @@ use std::path::Path;
 /// The longest text of a list of pitches, in bytes.
 const MAX_PITCHES: u64 = 1 << 20;
 
+/// The direction from A to B.
+const ANGLE: &str = "ground_angle_deg";
+/// What can be kept beside lengths.
+const KEPT: [&str; 7] = ["A", "B", "X2", "Y2", "X3", "Y3", ANGLE];
+
+/// A key that names nothing of any linkage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoKey {
+    /// It is no hole distance.
+    #[error("a hole distance is one of ground, a, b, c, d, e, or of a six-bar two joints, such as X2F2")]
+    Length,
+    /// It cannot be kept.
+    #[error(
+        "what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg, or of a six-bar two joints or a third pivot, such as X2F2 or Y2"
+    )]
+    Kept,
+    /// It cannot be set.
+    #[error(
+        "what can be set is one of ground, a, b, c, d, e, ground_angle_deg, or of a six-bar two joints, such as X2F2"
+    )]
+    Set,
+}
+
+/// Returns the hole distance of a key.
+///
+/// # Errors
+/// [`NoKey`].
+pub fn length_key(text: &str) -> Result<Length, NoKey> {
+    Length::named(text.trim()).ok_or(NoKey::Length)
+}
+
+/// Returns the key of a dimension that can be kept.
+///
+/// # Errors
+/// [`NoKey`].
+pub fn kept_key(text: &str) -> Result<String, NoKey> {
+    let key = text.trim();
+    (Length::named(key).is_some() || KEPT.contains(&key)).then(|| key.to_owned()).ok_or(NoKey::Kept)
+}
+
+/// Returns whether the key of a dimension that can be set names a length, which is above 0, and not an angle.
+///
+/// # Errors
+/// [`NoKey`].
+pub fn set_key(key: &str) -> Result<bool, NoKey> {
+    let is_length = Length::named(key).is_some();
+    (is_length || key == ANGLE).then_some(is_length).ok_or(NoKey::Set)
+}
+
 /// The linkage to snap, with its problem.
 #[derive(Clone, Debug)]
 pub struct Subject {
@@ -156,11 +205,6 @@ pub fn fixed(linkage: &CrankLinkage, keep: &[String], set: &[(String, f64)]) -> 
     }
     Ok(fixed)
 }
-
-/// The names of what can be kept beside lengths: fixed pivots, and the direction from A to B.
-pub const KEPT: [&str; 7] = ["A", "B", "X2", "Y2", "X3", "Y3", ANGLE];
-/// The direction from A to B.
-const ANGLE: &str = "ground_angle_deg";
 
 /// Reads a stock from a text file: its lengths, one a line or separated by commas.
 ///

@@ -133,8 +133,8 @@ pub fn buildable(
     outcome
 }
 
-/// Fits those of the known six-bars and eight-bars that are beyond the limits of a buildable linkage once more within them, with at most `allowance` evaluations; returns the
-/// ends, judged under the problem itself, and the evaluations used.
+/// Fits those of the known six-bars and eight-bars that are beyond the limits of a buildable linkage once more within them,
+/// with at most `allowance` evaluations; returns the ends, judged under the problem itself, and the evaluations used.
 fn refitted_known(
     context: Context<'_>,
     known: &[&Candidate],

@@ -51,20 +51,25 @@ fn snapped(record: &Record, request: &Request) -> (Problem, Candidate, Snapped) 
     (problem, candidate, found)
 }
 
+/// Checks that every length that was snapped is a multiple of a step in all answers, up to a part of itself.
+fn on_stock(found: &Snapped, step: f64, within: f64) {
+    for candidate in &found.candidates {
+        for length in &found.lengths {
+            let value = length.of(candidate.linkage).expect("the linkage has it");
+            let count = (value / step).round();
+            assert!((value - step * count).abs() <= within * value, "{} {value}", length.key());
+            assert!(count >= 1.0);
+        }
+    }
+}
+
 #[test]
 fn snapped_lengths_are_stock_to_the_digit_and_the_record_is_true() {
     for (from, step) in [(timed(), 0.05), (free(), 0.1)] {
         let request = request(step, &Length::OF_ONE_LOOP);
         let (problem, before, found) = snapped(from, &request);
         assert!(before.accepted && found.candidates[0].accepted);
-        for candidate in &found.candidates {
-            for length in &found.lengths {
-                let value = length.of(candidate.linkage).expect("a four-bar has it");
-                let count = (value / step).round();
-                assert!((value - step * count).abs() <= 8.0 * f64::EPSILON * value, "{length:?} {value}");
-                assert!(count >= 1.0);
-            }
-        }
+        on_stock(&found, step, 8.0 * f64::EPSILON);
         assert_eq!(found.lengths.len(), 6);
         let told = record(&problem, "snapped", None, None, &request, &found).expect("a record");
         // No search ended: the record must not say that one ran out of ideas.
@@ -221,14 +226,8 @@ fn lengths_of_linkages_with_a_slider_are_snapped_too() {
             Length::OF_ONE_LOOP.into_iter().filter(|length| length.of(linkage).is_some()).collect();
         assert_eq!(snapped, has);
         assert_eq!(has.len(), if linkage.slider_crank().is_some() { 4 } else { 3 });
-        for candidate in &found.candidates {
-            assert_eq!(candidate.linkage.kind(), linkage.kind());
-            for length in &found.lengths {
-                let value = length.of(candidate.linkage).expect("it has it");
-                let count = (value / step).round();
-                assert!((value - step * count).abs() <= 1e-12 * value, "{length:?} {value}");
-            }
-        }
+        assert!(found.candidates.iter().all(|c| c.linkage.kind() == linkage.kind()));
+        on_stock(&found, step, 1e-12);
         // Rounded lengths cost little where the rest is fitted again.
         let best = &found.candidates[0];
         assert!(best.accepted && best.error.rms < 0.01 * problem.task().size(), "{}", best.error.rms);
@@ -289,7 +288,7 @@ fn several_loops() -> [CrankLinkage; 2] {
 
 #[test]
 fn lengths_of_six_bars_and_eight_bars_are_snapped_too() {
-    let step = 5.0;
+    let (step, mut at_once) = (5.0, 0);
     for linkage in several_loops() {
         let (problem, before) = own_curve(&linkage).expect("it closes");
         assert!(before.accepted && before.error.rms < 1e-10, "{:?}", before.requirements);
@@ -303,22 +302,18 @@ fn lengths_of_six_bars_and_eight_bars_are_snapped_too() {
         let request = request(step, &wanted);
         let found = snap(Context::new(&problem, &budget()), &before, &request).expect("an answer");
         assert_eq!(found.lengths.len(), wanted.len());
-        for candidate in &found.candidates {
-            assert_eq!(candidate.linkage.kind(), linkage.kind());
-            for length in &found.lengths {
-                let value = length.of(candidate.linkage).expect("it has it");
-                let count = (value / step).round();
-                assert!((value - step * count).abs() <= 1e-11 * value, "{} {value}", length.key());
-            }
-        }
+        assert!(found.candidates.iter().all(|c| c.linkage.kind() == linkage.kind()));
+        on_stock(&found, step, 1e-11);
         let best = &found.candidates[0];
         assert!(best.accepted && best.error.rms < 0.02 * problem.task().size(), "{}", best.error.rms);
         if let Some(nearest) = &found.nearest {
             assert!(compare(&problem, best, nearest).is_le());
+            at_once += 1;
         }
         let told = record(&problem, "snapped", None, None, &request, &found).expect("a record");
         assert_eq!(verify(&told).expect("a problem"), []);
     }
+    assert!(at_once > 0, "none was rounded at once");
 }
 
 #[test]

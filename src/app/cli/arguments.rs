@@ -1,6 +1,6 @@
 //! Commands and options, with their help texts and the checks of their values.
 
-use crate::app::snapping::KEPT;
+use crate::app::snapping::{NoKey, kept_key, length_key, set_key};
 use crate::files::schema::SchemaKind;
 use crate::mechanism::MAX_MAGNITUDE;
 use crate::mechanism::analysis::PositionMethod;
@@ -390,11 +390,11 @@ pub struct Snap {
     /// The stock: the lengths in this text file, one a line or separated by commas
     #[arg(long, value_name = "FILE")]
     pub pitches: Option<PathBuf>,
-    /// Which hole distances are snapped: ground, a, b, c, d, e, of a six-bar also two joints, such as X2F2 [default: all]
-    #[arg(long, value_name = "KEY,..", value_delimiter = ',', value_parser = length)]
+    /// Snap these hole distances alone: ground, a, b, c, d, e, of a six-bar also two joints, such as X2F2 [default: all]
+    #[arg(long, value_name = "KEY,..", value_delimiter = ',', value_parser = length_key)]
     pub snap: Option<Vec<Length>>,
-    /// What stays exactly as it is: hole distances, A, B, ground_angle_deg, of a six-bar also its third pivot, such as Y2
-    #[arg(long, value_name = "KEY,..", value_delimiter = ',', value_parser = kept)]
+    /// Keep these exactly as they are: hole distances, A, B, ground_angle_deg, of a six-bar also its third pivot, such as Y2
+    #[arg(long, value_name = "KEY,..", value_delimiter = ',', value_parser = kept_key)]
     pub keep: Vec<String>,
     /// Put a dimension at a value of its own: a hole distance, ground_angle_deg
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = dimension)]
@@ -556,16 +556,8 @@ enum ValueError {
     NotAPair(&'static str),
     #[error("what can be set is certify.time_limit_s")]
     NotOfCertify,
-    #[error("a hole distance is one of ground, a, b, c, d, e, or of a six-bar two joints, such as X2F2")]
-    NotALength,
-    #[error(
-        "what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg, or of a six-bar two joints or a third pivot, such as X2F2 or Y2"
-    )]
-    NotKept,
-    #[error(
-        "what can be set is one of ground, a, b, c, d, e, ground_angle_deg, or of a six-bar two joints, such as X2F2"
-    )]
-    NotADimension,
+    #[error(transparent)]
+    Key(#[from] NoKey),
 }
 
 fn finite(text: &str) -> Result<f64, ValueError> {
@@ -590,23 +582,9 @@ fn certify_key(text: &str) -> Result<(String, f64), ValueError> {
     if seconds <= MAX_CERTIFY_S { Ok((key, seconds)) } else { Err(ValueError::TooLong) }
 }
 
-fn length(text: &str) -> Result<Length, ValueError> {
-    Length::named(text.trim()).ok_or(ValueError::NotALength)
-}
-
-fn kept(text: &str) -> Result<String, ValueError> {
-    let key = text.trim();
-    let known = Length::named(key).is_some() || KEPT.contains(&key);
-    known.then(|| key.into()).ok_or(ValueError::NotKept)
-}
-
 fn dimension(text: &str) -> Result<(String, f64), ValueError> {
     let (key, value) = pair(text, "a=2.5")?;
-    let number = match key.as_str() {
-        key if Length::named(key).is_some() => positive(&value)?,
-        "ground_angle_deg" => finite(&value)?,
-        _ => return Err(ValueError::NotADimension),
-    };
+    let number = if set_key(&key)? { positive(&value)? } else { finite(&value)? };
     Ok((key, number))
 }
 

@@ -108,7 +108,7 @@ impl MultiLoop {
     }
 }
 
-/// What is held of the joints of a body.
+/// A dimension of a body at a given value.
 enum Held {
     /// The distance of two joints.
     Length([usize; 2], f64),
