@@ -3,18 +3,19 @@
 //! A joint fit does not fix the linkage type unless the problem does. By way of a change point positions then come to
 //! lie on two circuits, or on both branches of a rocking motion, and such an end may well have the least error of all.
 //! The requirements are best met near it by a linkage that cannot stray: with one circuit if branches are free, with an
-//! input that turns fully if one branch is required. The fit of a motion can also hold its points on the branch from which
-//! they start, be the crank the one dyad or the other: the best acceptable linkage is often at a toggle of one of its poses
-//! or at a change point.
+//! input that turns fully if one branch is required. The fit there holds its points on the branch from which they start; of
+//! a motion it can do so whatever the type, be the crank the one dyad or the other. The best acceptable linkage is often at
+//! a toggle of one of its points or at a change point.
 
 use super::constants::free::{LED_BACK_MOST, SHORT_FIT, WORTH_LEADING_BACK};
 use super::motion::swapped;
 use super::multistart::{Effort, Spender, by_merit};
 use crate::mechanism::four_bar::mobility::linkage_type;
-use crate::mechanism::{AssemblyMode, Branch, LinkageType};
+use crate::mechanism::{AssemblyMode, Branch, Complex, LinkageType};
 use crate::task::Problem;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
+use crate::task::forms::torus::mirrored;
 
 /// Types whose circuits are branches: the input turns fully.
 pub(in crate::synthesis) const ONE_BRANCH: [LinkageType; 2] =
@@ -119,25 +120,27 @@ fn aimed_at(start: &Start, kind: LinkageType) -> Start {
     start
 }
 
-/// Returns the start with all points in the assembly that most of them have: at the same crank angle, D is mirrored in
-/// the line B C,
-///
-/// ```text
-/// w = B - C,   u' = (w/|w|)^2 conj(u)
-/// ```
+/// Returns the start with all points in the assembly that most of them have. The others are mirrored
+/// ([`mirrored`]); on a path they may join the point before or after them instead, if that lies nearer to their targets.
 fn on_one_branch(problem: &Problem, end: &Start) -> Option<Start> {
     let shape = problem.space(end.setting.side).shape(&end.design)?;
     let assemblies: Vec<AssemblyMode> =
         end.positions.iter().map(|[e, u]| assembly_of(&shape, *e, *u)).collect();
+    let n = assemblies.len();
     let plus = assemblies.iter().filter(|t| **t == AssemblyMode::Plus).count();
-    let most = if 2 * plus >= assemblies.len() { AssemblyMode::Plus } else { AssemblyMode::Minus };
+    let most = if 2 * plus >= n { AssemblyMode::Plus } else { AssemblyMode::Minus };
+    let task = problem.task();
+    let miss = |j: usize, [e, u]: [Complex; 2]| {
+        (task.points()[j] - (shape.crank_pivot + e * shape.crank + u * shape.offset)).norm_sqr()
+    };
     let mut start = end.clone();
-    for ([e, u], assembly) in start.positions.iter_mut().zip(assemblies) {
-        let diagonal = shape.follower_pivot - shape.crank_pivot - *e * shape.crank;
-        let square = diagonal.norm_sqr();
-        if assembly != most && square > 0.0 {
-            *u = diagonal * diagonal / square * u.conj();
-        }
+    for j in (0..n).filter(|j| assemblies[*j] != most) {
+        let at_home = |i: &usize| assemblies[*i] == most;
+        let neighbours = [(0..j).rev().find(at_home), (j + 1..n).find(at_home)].into_iter().flatten();
+        let places = neighbours.filter(|_| task.body().is_none()).map(|i| end.positions[i]);
+        start.positions[j] = places.fold(mirrored(&shape, end.positions[j]), |best, place| {
+            if miss(j, place) < miss(j, best) { place } else { best }
+        });
     }
     Some(start)
 }
@@ -145,9 +148,9 @@ fn on_one_branch(problem: &Problem, end: &Start) -> Option<Start> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::Complex;
-    use crate::synthesis::fixture;
+    use crate::synthesis::{Budget, Context, fixture};
     use std::f64::consts::TAU;
+    use std::sync::atomic::AtomicBool;
 
     /// Returns points all around the curve of a linkage, and a start there in the given assemblies.
     fn start(links: [f64; 4], require: &str, assemblies: impl Fn(usize) -> AssemblyMode) -> (Problem, Start) {
@@ -207,6 +210,43 @@ mod tests {
                 assert!((u.norm() - 1.0).abs() < 1e-12);
             }
         }
+    }
+
+    #[test]
+    fn a_point_on_the_way_back_joins_its_neighbour_where_that_lies_nearer_to_its_target() {
+        let plus = |_| AssemblyMode::Plus;
+        let (problem, mut start) = start(CRANK_ROCKER, "", plus);
+        let shape = problem.space(start.setting.side).shape(&start.design).expect("a shape");
+        let all_at_home = start.positions.clone();
+        start.positions[7] = mirrored(&shape, all_at_home[9]);
+        let back = on_one_branch(&problem, &start).expect("a start");
+        // At its own target neither neighbour is as far away as the place at the crank angle of point 9.
+        let neighbours = [all_at_home[6], all_at_home[8]];
+        assert!(neighbours.contains(&back.positions[7]), "{:?} of {neighbours:?}", back.positions[7]);
+        start.positions[7] = mirrored(&shape, all_at_home[7]);
+        let back = on_one_branch(&problem, &start).expect("a start");
+        assert!(
+            (back.positions[7][1] - all_at_home[7][1]).norm() < 1e-12,
+            "the mirrored place is its target"
+        );
+    }
+
+    #[test]
+    fn a_fit_on_one_branch_lets_no_point_leave_it() {
+        // Drawn by both circuits of a double-crank that is almost a change point: no linkage draws it on one of them.
+        let double_crank = [3.0, 3.05, 3.02, 3.04];
+        let (problem, start) = start(double_crank, "", |j| {
+            if (9..14).contains(&j) { AssemblyMode::Minus } else { AssemblyMode::Plus }
+        });
+        let cancel = AtomicBool::new(false);
+        let budget = Budget::new(&cancel, None);
+        let context = Context::new(&problem, &budget);
+        let start = on_one_branch(&problem, &start).expect("a start");
+        let mut spender = Spender::new(context, 5000);
+        let (_, end) = spender.fit(&problem, start, SHORT_FIT.on_branch(), u64::MAX).expect("an end");
+        let shape = problem.space(end.setting.side).shape(&end.design).expect("a shape");
+        let plus = |[e, u]: &[Complex; 2]| assembly_of(&shape, *e, *u) == AssemblyMode::Plus;
+        assert!(end.positions.iter().all(plus));
     }
 
     #[test]

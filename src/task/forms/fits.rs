@@ -7,7 +7,7 @@
 use super::design_space::{DESIGN, Design};
 use super::start::{AS_WRITTEN, Start};
 use super::timed::{FunctionFit, RangedFit, TimedMotionFit, TimedPathFit, WITH_FRAME};
-use super::torus::{MotionFit, PathFit, Positions};
+use super::torus::{MotionFit, PathFit, Positions, TorusFit};
 use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::task::Problem;
 use crate::task::ranges::Scales;
@@ -48,8 +48,24 @@ pub enum Kept {
     Nothing,
     /// The fit keeps the order of the positions around the curve.
     Order,
-    /// The fit keeps their order and, in a motion, the branch on which they all are.
+    /// The fit keeps their order and the branch on which they all are.
     OrderAndBranch,
+}
+
+impl Kept {
+    /// Returns the fit that keeps this of the positions.
+    fn of<'a, const R: usize>(
+        self,
+        fit: TorusFit<'a, R>,
+        design: &Design,
+        positions: &Positions,
+    ) -> TorusFit<'a, R> {
+        match self {
+            Kept::Nothing => fit,
+            Kept::Order => fit.in_order(design, positions),
+            Kept::OrderAndBranch => fit.in_order(design, positions).on_its_branch(design, positions),
+        }
+    }
 }
 
 /// Calls `user` with the fit of a problem at a start; `None` if the start has no positions and the timing is free.
@@ -74,17 +90,11 @@ pub fn on_fit<U: FitUser>(problem: &Problem, start: &Start, kept: Kept, user: U)
             Some(user.on(&fit, x))
         }
         (false, None) => {
-            let fit = PathFit::new(problem, *setting);
-            let fit = if kept == Kept::Nothing { fit } else { fit.in_order(design, positions) };
+            let fit = kept.of(PathFit::new(problem, *setting), design, positions);
             Some(user.on(&fit, *design))
         }
         (false, Some(_)) => {
-            let fit = MotionFit::new(problem, *setting);
-            let fit = match kept {
-                Kept::Nothing => fit,
-                Kept::Order => fit.in_order(design, positions),
-                Kept::OrderAndBranch => fit.in_order(design, positions).on_its_branch(design, positions),
-            };
+            let fit = kept.of(MotionFit::new(problem, *setting), design, positions);
             Some(user.on(&fit, *design))
         }
     }

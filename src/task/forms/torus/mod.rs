@@ -226,6 +226,19 @@ fn misses(shape: &Shape, y: Complex, [e, u]: [Complex; 2]) -> [f64; SHAPE] {
     [-y.re, -y.im, y.re, y.im, -dot(y, e), -dot(y, u), shape.follower, 0.0, 0.0]
 }
 
+/// Returns the position with the same crank angle in the other assembly: D is mirrored in the line B C,
+///
+/// ```text
+/// w = B - C,   u' = (w/|w|)^2 conj(u)
+/// ```
+///
+/// The position itself if C lies on B.
+pub fn mirrored(shape: &Shape, [e, u]: [Complex; 2]) -> [Complex; 2] {
+    let diagonal = shape.follower_pivot - shape.crank_pivot - e * shape.crank;
+    let square = diagonal.norm_sqr();
+    [e, if square > 0.0 { diagonal * diagonal / square * u.conj() } else { u }]
+}
+
 /// Returns the unit tangent (dphi, domega) of the curve at a position.
 fn tangent_of(shape: &Shape, position: [Complex; 2]) -> Option<[f64; 2]> {
     let (_, by_e, by_u) = frame(shape, position);
@@ -466,6 +479,12 @@ impl<const R: usize> BlockLeastSquares<DESIGN, R> for TorusFit<'_, R> {
             },
         );
         blocks.scatter(out);
+        // A point of a path that has stepped over a toggle, or to the other circuit, comes back at the same crank angle.
+        if let Some(assembly) = self.assembly.filter(|_| R == 2) {
+            for position in out.iter_mut().filter(|[e, u]| assembly_of(&new, *e, *u) != assembly) {
+                *position = mirrored(&new, *position);
+            }
+        }
         settled
     }
 
