@@ -5,6 +5,7 @@ use super::transmission::TransmissionExtremes;
 use crate::mechanism::any::{
     CrankRange, Link, Mechanism, MechanismMotion, MechanismPose, Output, OutputRate, Status,
 };
+use crate::mechanism::structure::{Body, Group, OutputBody, Pair, Structure};
 use crate::mechanism::{Complex, FourBar, Position};
 
 const NAMES: [&str; 5] = ["A", "B", "C", "D", "P"];
@@ -115,5 +116,23 @@ impl Mechanism for FourBar {
 
     fn longest_to_shortest(&self) -> Option<f64> {
         Some(self.link_ratio()).filter(|ratio| ratio.is_finite())
+    }
+    fn structure(&self) -> Structure {
+        let x = |along: f64| Complex::new(along, 0.0);
+        let p = self.coupler_ratio() * self.coupler();
+        Structure {
+            bodies: vec![
+                Body::ground([(0, self.crank_pivot()), (1, self.follower_pivot())]),
+                Body::link("crank", &[(0, x(0.0)), (2, x(self.crank()))]),
+                Body::link("coupler", &[(2, x(0.0)), (3, x(self.coupler())), (4, p)]),
+                Body::link("follower", &[(1, x(0.0)), (3, x(self.follower()))]),
+            ],
+            crank_pivot: 0,
+            groups: vec![Group {
+                bodies: [2, 3],
+                pairs: [Pair::pin(2, [1, 2]), Pair::pin(1, [0, 3]), Pair::pin(3, [2, 3])],
+            }],
+            output: Some(OutputBody::Turns(3)),
+        }
     }
 }
