@@ -43,6 +43,7 @@
 //! | [`grid`] | a table of text with aligned columns, and the colours of a terminal |
 //! | [`html`] | a run as an HTML page in one file: the linkage moving over its target, with every figure and verdict |
 //! | [`labels`] | placement of labels beside their points, where they hide least |
+//! | [`loads`] | loads of an analysis as text, as columns of a CSV, and as a chart of the torque |
 //! | `loops` | the links of a six-bar or an eight-bar in drawings |
 //! | [`mechanism_sheet`] | a drawing of a linkage of any kind at one position, with other positions drawn faintly and the path of its traced point |
 //! | [`mechanism_text`] | an analysis of a linkage of any kind as text and as CSV |
@@ -87,6 +88,7 @@ pub mod grid;
 mod guide;
 pub mod html;
 mod labels;
+pub mod loads;
 mod loops;
 pub mod mechanism_sheet;
 pub mod mechanism_text;

@@ -317,6 +317,9 @@ pub struct Analyze {
     /// Acceleration of the crank, rad/s^2
     #[arg(long, value_name = "A", default_value = "0", allow_negative_numbers = true, value_parser = finite)]
     pub alpha: f64,
+    /// Loads in a file of their own, in place of those of the linkage file: torque, joint forces, energies
+    #[arg(long, value_name = "FILE")]
+    pub loads: Option<PathBuf>,
     /// Methods side by side: natural, algebraic, complex, fixed-point
     #[arg(long, value_name = "METHOD,..", value_delimiter = ',')]
     pub method: Vec<PositionMethod>,

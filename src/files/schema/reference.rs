@@ -220,6 +220,7 @@ impl<'a> Page<'a> {
         for (key, value) in inner {
             let path = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
             let Some((table, list)) = self.inner(value) else { continue };
+            let path = if self.is_by_name(value) { format!("{path}.NAME") } else { path };
             let heading = if list { format!("[[{path}]]") } else { format!("[{path}]") };
             let _ = write!(self.text, "\n## `{heading}`\n\n{}\n", description(value));
             self.table(&path, table);
@@ -233,7 +234,14 @@ impl<'a> Page<'a> {
             Value::Null => (value, false),
             items => (self.resolved(items), true),
         };
+        let value = if self.is_by_name(value) { self.resolved(&value["additionalProperties"]) } else { value };
         value["properties"].is_object().then_some((value, list))
+    }
+
+    /// Returns whether a key holds tables by names that are free.
+    fn is_by_name(&self, value: &'a Value) -> bool {
+        let tables = self.resolved(&self.resolved(value)["additionalProperties"]);
+        tables["properties"].is_object()
     }
 
     /// Returns the allowed words of a key, if its value is one of several words or a list of such.

@@ -70,6 +70,8 @@ pub enum LoadFault {
     BadTable,
     /// The linkage is beyond the limits of a chain.
     NoChain,
+    /// The linkage has no unit of lengths.
+    NoUnit,
 }
 
 impl fmt::Display for LoadFault {
@@ -90,6 +92,7 @@ impl fmt::Display for LoadFault {
             LoadFault::BadTable => f.write_str(
                 "a table needs two rows or more, with ascending crank angles within one turn",
             ),
+            LoadFault::NoUnit => f.write_str("the linkage has no unit, so that its lengths in metres are not known"),
             LoadFault::NoChain => f.write_str("the linkage is beyond the limits of a chain"),
         }
     }
@@ -110,6 +113,7 @@ impl LoadFault {
             LoadFault::NotFinite(_) => "write a finite number".into(),
             LoadFault::Negative(_) => "write a number of 0 or more".into(),
             LoadFault::BadTable => "write rows such as [[0, 5], [90, 8], [270, 2]]".into(),
+            LoadFault::NoUnit => "write unit = \"mm\" (or cm, m, in) into the linkage's file".into(),
             LoadFault::NoChain => "use smaller numbers".into(),
         }
     }

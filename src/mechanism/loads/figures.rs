@@ -119,6 +119,9 @@ pub struct LoadFigures {
     /// The torsion springs, counted from 1, that are wound past half a turn: there their moment jumps.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub overwound_springs: Vec<usize>,
+    /// The torque over the range, (crank angle in degrees, N m) of each stretch without a gap.
+    #[serde(skip)]
+    pub torque_strands: Vec<Vec<(f64, f64)>>,
 }
 
 /// A stretch of crank angles with the samples on it.
@@ -127,6 +130,20 @@ struct Sweep {
     step: f64,
     periodic: bool,
     samples: Vec<Option<Sample>>,
+}
+
+impl Sweep {
+    /// Returns the torque of each stretch without a gap; that of a full turn ends where it begins.
+    fn torque_strands(&self) -> Vec<Vec<(f64, f64)>> {
+        let again = self.samples.first().filter(|_| self.periodic);
+        let places = (0..).map(|i| (self.begin + self.step * f64::from(i)).to_degrees());
+        let all: Vec<Option<(f64, f64)>> = places
+            .zip(self.samples.iter().chain(again))
+            .map(|(deg, sample)| sample.as_ref().map(|sample| (deg, sample.torque)))
+            .collect();
+        let strands = all.split(Option::is_none).filter(|strand| !strand.is_empty());
+        strands.map(|strand| strand.iter().copied().flatten().collect()).collect()
+    }
 }
 
 /// All quantities at a sample whose peaks are wanted, with their signs, and the reflected inertia.
@@ -196,6 +213,7 @@ impl LoadedLinkage {
             advantage_least,
             output_advantage_least: output.filter(|_| self.output().is_some()),
             overwound_springs: overwound(&sweeps, &self.torsion_springs()),
+            torque_strands: sweeps.iter().flat_map(Sweep::torque_strands).collect(),
         })
     }
 
