@@ -18,6 +18,8 @@ const FIGURES: usize = 4;
 const COLUMNS_OF_PAIRS: usize = 6;
 /// The largest number of crank angles that are named one by one.
 const NAMED_ANGLES: usize = 6;
+/// A coefficient of speed fluctuation of machines that run steadily (R. L. Norton, Design of Machinery: 0.01 to 0.05).
+const STEADY: f64 = 0.05;
 /// The height of the chart.
 const HEIGHT: f64 = 210.0;
 
@@ -71,7 +73,10 @@ pub(super) fn comment(record: &LoadRecord) -> String {
         format!("{name} on {on} from {from}{kind}")
     };
     let pairs: Vec<String> = record.pairs.iter().enumerate().map(pair).collect();
-    format!("# torque_N_m: of the motor on the crank, counter-clockwise. Forces: {}. Friction is left out.\n", pairs.join("; "))
+    format!(
+        "# torque_N_m: of the motor on the crank, counter-clockwise. Forces: {}. Friction is left out.\n",
+        pairs.join("; ")
+    )
 }
 
 /// Returns a figure with its unit and the crank angle at which it is.
@@ -88,12 +93,15 @@ pub(super) fn words(record: &LoadRecord, omega2_rad_s: f64) -> String {
     let range = if figures.full_turn {
         "a turn".to_owned()
     } else {
-        let arcs: Vec<String> =
-            figures.arcs_deg.iter().map(|[from, to]| format!("{} to {}", degrees(*from), degrees(*to))).collect();
+        let arcs: Vec<String> = figures
+            .arcs_deg
+            .iter()
+            .map(|[from, to]| format!("{} to {}", degrees(*from), degrees(*to)))
+            .collect();
         format!("{} (1° short of each toggle, where the torque has no bound)", arcs.join(" and "))
     };
     let mut text = format!(
-        "Loads over {range}: the torque on the crank is at most {}, {} N m rms, {} N m on average",
+        "Loads over {range}: the torque on the crank has its peak of {}, {} N m rms, {} N m on average",
         at(&figures.torque_peak, "N m"),
         n(figures.torque_rms),
         n(rounded(figures.torque_mean, figures.torque_rms)),
@@ -110,7 +118,7 @@ pub(super) fn words(record: &LoadRecord, omega2_rad_s: f64) -> String {
     text.push_str(&format!(
         " Shaking force up to {}, shaking moment about the crank's pivot up to {}.",
         at(&figures.shaking_force, "N"),
-        at(&figures.shaking_moment, "N m")
+        at(&Peak { value: figures.shaking_moment.value.abs(), ..figures.shaking_moment }, "N m")
     ));
     text.push_str(&advantages(figures, record.output));
     text.push_str(&left_out(figures));
@@ -129,11 +137,19 @@ fn swing(fluctuation: &Fluctuation) -> String {
     let n = |value: f64| significant(value, FIGURES);
     let mut text = format!(" At constant motor torque the energy swings by {} J", n(fluctuation.energy));
     match (fluctuation.coefficient, fluctuation.halving_flywheel) {
-        (Some(coefficient), Some(flywheel)) => text.push_str(&format!(
-            ", the speed by about {} of it; a flywheel of {} kg m2 on the crank halves that.",
-            n(coefficient),
-            n(flywheel)
-        )),
+        (Some(coefficient), Some(halving)) => {
+            let inertia = n(fluctuation.reflected_inertia);
+            text.push_str(&format!(
+                ". With the bodies' own inertia at the crank, {inertia} kg m2, the coefficient of speed fluctuation is {}: a flywheel of {} \
+                 kg m2 on the crank halves it",
+                n(coefficient),
+                n(halving)
+            ));
+            if let Some(flywheel) = fluctuation.flywheel_for(STEADY).filter(|flywheel| *flywheel > 0.0) {
+                text.push_str(&format!(", one of {} kg m2 brings it to {STEADY}", n(flywheel)));
+            }
+            text.push('.');
+        }
         _ => text.push('.'),
     }
     text
@@ -153,7 +169,10 @@ fn joint(joint: &JointPeak) -> String {
 fn advantages(figures: &LoadFigures, output: Option<OutputBody>) -> String {
     let mut text = String::new();
     if let Some(least) = &figures.advantage_least {
-        text.push_str(&format!(" For each N m on the crank the traced point pushes with {} or more", at(least, "N")));
+        text.push_str(&format!(
+            " For each N m on the crank the traced point pushes with {} or more",
+            at(least, "N")
+        ));
         match (&figures.output_advantage_least, output) {
             (Some(least), Some(OutputBody::Turns(_))) => {
                 text.push_str(&format!(", the output turns with {} or more.", at(least, "N m")));
@@ -191,12 +210,16 @@ fn left_out(figures: &LoadFigures) -> String {
 /// Returns the table of torque, energies and the size of each joint's force at the crank angles asked for.
 pub(super) fn table(record: &LoadRecord, rows: &[(f64, Option<&Instant>)], colour: Colour) -> String {
     let shown = record.pairs.len().min(COLUMNS_OF_PAIRS);
-    let names: Vec<String> = (0..shown).map(|i| format!("F {}", clean(&column_name(record, i)))).collect();
+    let letter = |i: usize| if record.pairs[i].slides { "N" } else { "F" };
+    let names: Vec<String> =
+        (0..shown).map(|i| format!("{} {}", letter(i), clean(&column_name(record, i)))).collect();
     let mut heads = vec!["crank", "torque", "kinetic", "potential"];
     heads.extend(names.iter().map(String::as_str));
     let mut grid = Grid::new(&[(Right, &heads)]);
     let values = |at: &Instant| {
-        let size = |force: &JointForce| force.force.map_or(force.normal.unwrap_or_default().abs(), |[x, y]| x.hypot(y));
+        let size = |force: &JointForce| {
+            force.force.map_or(force.normal.unwrap_or_default().abs(), |[x, y]| x.hypot(y))
+        };
         let mut values = vec![at.torque, at.kinetic, at.potential];
         values.extend(at.forces.iter().take(shown).map(size));
         values
@@ -215,7 +238,7 @@ pub(super) fn table(record: &LoadRecord, rows: &[(f64, Option<&Instant>)], colou
         cells.extend(sizes.iter().enumerate().map(|(i, size)| number(of(i), *size)));
         grid.row(cells);
     }
-    let note = "Torque in N m, energies in J, sizes of the joints' forces in N; the CSV has their components.";
+    let note = "Torque in N m, energies in J, sizes of the joints' forces (F) and of sliders' (N) in N; the CSV has their components.";
     format!("\n{}{}", grid.render(colour), wrapped("\n  ", "  ", note, COLUMNS))
 }
 
@@ -223,7 +246,8 @@ pub(super) fn table(record: &LoadRecord, rows: &[(f64, Option<&Instant>)], colou
 pub(super) fn sheet(record: &LoadRecord, toggles_deg: &[f64]) -> Option<Sheet> {
     let figures = record.figures.as_ref()?;
     let ends = figures.torque_strands.iter().flatten().map(|(deg, _)| *deg);
-    let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let (low, high) =
+        ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     if high <= low {
         return None;
     }
@@ -241,7 +265,7 @@ pub(super) fn sheet(record: &LoadRecord, toggles_deg: &[f64]) -> Option<Sheet> {
     let area = Area { x: INSET, y: HEAD, width: FULL - 2.0 * INSET, height: HEIGHT };
     chart.draw(&mut sheet.body, &abscissa, area);
     sheet.note = format!(
-        "at most {}, {} N m rms; friction is left out",
+        "peak {}, {} N m rms; friction is left out",
         at(&figures.torque_peak, "N m"),
         significant(figures.torque_rms, FIGURES)
     );

@@ -3,8 +3,8 @@
 use super::analysis_text::{DIGITS, degrees, input, number, reach, status_cell};
 use super::csv::written;
 use super::grid::Align::{Left, Right};
-use super::loads;
 use super::grid::{Colour, Grid, Ink, plain};
+use super::loads;
 use super::text::{COLUMNS, NO_NUMBER, capitalised, clean, exact, indented, plural, significant, wrapped};
 use super::words::length_suffix;
 use crate::mechanism::Linkage;

@@ -6,8 +6,8 @@ use super::{Ended, refuse, refuse_at, refuse_path, terminal};
 use crate::app::inputs;
 pub use crate::app::inputs::{Given, NoCandidate, NotRead, Run, Which, file_of};
 use crate::files::linkage_file::AnyLinkageFile;
-use crate::mechanism::loads::Loads;
 use crate::judge::verify::{Mismatch, verify};
+use crate::mechanism::loads::Loads;
 use crate::record::Record;
 use std::path::Path;
 

@@ -255,10 +255,7 @@ pub fn load_loaded(path: &Path) -> Result<(AnyLinkageFile, Option<Loads>), Box<D
 ///
 /// # Errors
 /// As [`load_loaded`].
-pub fn parse_loaded(
-    file_name: &str,
-    text: &str,
-) -> Result<(AnyLinkageFile, Option<Loads>), Box<Diagnostic>> {
+pub fn parse_loaded(file_name: &str, text: &str) -> Result<(AnyLinkageFile, Option<Loads>), Box<Diagnostic>> {
     let toml = TomlText { file: file_name, text: input_text::without_mark(text) };
     if toml.text.trim().is_empty() {
         return toml.refuse_file("the file is empty", KINDS);
@@ -295,7 +292,8 @@ pub fn parse_loaded(
         return toml.refuse_file("there is no linkage in this file", KINDS);
     };
     let unit = raw.unit;
-    let loads = raw.loads.map(|OnlyTable(loads)| of_linkage_file(&toml, loads, unit, &linkage)).transpose()?;
+    let loads =
+        raw.loads.map(|OnlyTable(loads)| of_linkage_file(&toml, loads, unit, &linkage)).transpose()?;
     Ok((LinkageFile { name, unit, linkage }, loads))
 }
 

@@ -10,7 +10,7 @@ pub(crate) use raw::RawLoads;
 use super::diagnostic::{Checked, Diagnostic};
 use super::input_text;
 use super::linkage_file::{AnyLinkageFile, FORMAT, check_format, checked_name};
-use super::toml_text::TomlText;
+use super::toml_text::{TomlText, nearest};
 use super::toml_values::{Count, OnlyTable};
 use crate::mechanism::loads::{
     BodyMass, Couple, Force, ForceVector, LoadError, LoadFault, LoadKey, LoadedLinkage, Loads, Mass, Place,
@@ -35,7 +35,8 @@ struct RawLoadsFile {
 }
 
 /// Help for lengths without a unit.
-const UNIT_HELP: &str = "write unit = \"mm\" (or cm, m, in) below format: torques and masses need real lengths";
+const UNIT_HELP: &str =
+    "write unit = \"mm\" (or cm, m, in) below format: torques and masses need real lengths";
 
 /// Reads a file of loads for a linkage.
 ///
@@ -97,7 +98,11 @@ pub(crate) fn of_linkage_file(
     linkage: &Linkage,
 ) -> Checked<Loads> {
     let Some(unit) = unit else {
-        return toml.refuse_key("loads", "the key `unit` is missing: loads need the unit of lengths", UNIT_HELP);
+        return toml.refuse_key(
+            "loads",
+            "the key `unit` is missing: loads need the unit of lengths",
+            UNIT_HELP,
+        );
     };
     checked(toml, raw, unit, (linkage, unit))
 }
@@ -142,7 +147,16 @@ fn explain(toml: &TomlText<'_>, error: &LoadError) -> Diagnostic {
     let whole_table = matches!(&error.key, LoadKey::Body(_, ""));
     let diagnostic =
         if whole_table { toml.at_key_path(&parts, message) } else { toml.at_path(&parts, message) };
-    diagnostic.with_help(error.fault.remedy())
+    diagnostic.with_help(hint(&error.fault) + &error.fault.remedy())
+}
+
+/// Returns the name that an unknown one is nearest to, as a question.
+fn hint(fault: &LoadFault) -> String {
+    let (LoadFault::UnknownBody { name, known } | LoadFault::UnknownJoint { name, known }) = fault else {
+        return String::new();
+    };
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    nearest(name, &known).map_or_else(String::new, |name| format!("did you mean \"{name}\"? "))
 }
 
 /// Reads raw loads, with metres in the unit of their lengths.
@@ -219,9 +233,11 @@ impl Reader<'_, '_> {
             (Some(_), Some(_)) => {
                 refuse("density_kg_m3", "two masses: mass_kg and density_kg_m3", "keep one of the two keys")
             }
-            (None, None) => {
-                refuse("", "this body has no mass", "add mass_kg = 0.2, or density_kg_m3 with thickness and width")
-            }
+            (None, None) => refuse(
+                "",
+                "this body has no mass",
+                "add mass_kg = 0.2, or density_kg_m3 with thickness and width",
+            ),
         }
     }
 
@@ -235,8 +251,9 @@ impl Reader<'_, '_> {
 
     fn force(&self, i: usize, raw: RawForce) -> Checked<Force> {
         let number = i.to_string();
-        let refuse =
-            |key: &str, message: &str, help: &str| self.refuse(&["loads", "force", &number, key], message, help);
+        let refuse = |key: &str, message: &str, help: &str| {
+            self.refuse(&["loads", "force", &number, key], message, help)
+        };
         let vector = match (raw.force, raw.table, raw.opposing) {
             (Some(force), None, None) => ForceVector::Vector(Quantity::Constant(force.0), raw.along),
             (None, Some(table), None) => {
@@ -253,7 +270,9 @@ impl Reader<'_, '_> {
                 let help = "add force_N = [0, -10], table = [[0, 0, -10], [180, 0, -5]] or opposing_N = 5";
                 return refuse("at", "this force has no size", help);
             }
-            (Some(_), Some(_), _) => return refuse("table", "two sizes: force_N and table", "keep one of the two"),
+            (Some(_), Some(_), _) => {
+                return refuse("table", "two sizes: force_N and table", "keep one of the two");
+            }
             (.., Some(_)) => return refuse("opposing_N", "two sizes of one force", "keep one of the two"),
         };
         Ok(Force { at: self.place(raw.at), body: raw.body, vector })
@@ -261,8 +280,9 @@ impl Reader<'_, '_> {
 
     fn couple(&self, i: usize, raw: RawCouple) -> Checked<Couple> {
         let number = i.to_string();
-        let refuse =
-            |key: &str, message: &str, help: &str| self.refuse(&["loads", "couple", &number, key], message, help);
+        let refuse = |key: &str, message: &str, help: &str| {
+            self.refuse(&["loads", "couple", &number, key], message, help)
+        };
         let moment = match (raw.moment, raw.table) {
             (Some(moment), None) => Quantity::Constant([moment.0]),
             (None, Some(table)) => {
@@ -281,8 +301,9 @@ impl Reader<'_, '_> {
 
     fn spring(&self, i: usize, raw: RawSpring) -> Checked<Spring> {
         let number = i.to_string();
-        let refuse =
-            |key: &str, message: &str, help: &str| self.refuse(&["loads", "spring", &number, key], message, help);
+        let refuse = |key: &str, message: &str, help: &str| {
+            self.refuse(&["loads", "spring", &number, key], message, help)
+        };
         let is_torsion = raw.body.is_some();
         let of_torsion = [
             ("against", raw.against.is_some()),

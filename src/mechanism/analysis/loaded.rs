@@ -1,9 +1,11 @@
 //! Loads of an analysis: torque, joint forces and energies at each crank angle asked for, and figures over the crank's range.
 
-use super::driven::MechanismAnalysis;
 use super::Analysis;
+use super::driven::MechanismAnalysis;
 use crate::mechanism::four_bar::motion::CrankMotion;
-use crate::mechanism::loads::{Instant, LoadError, LoadFault, LoadFigures, LoadKey, LoadedLinkage, Loads, Scratch};
+use crate::mechanism::loads::{
+    Instant, LoadError, LoadFault, LoadFigures, LoadKey, LoadedLinkage, Loads, Scratch,
+};
 use crate::mechanism::structure::{OutputBody, PairKind};
 use crate::mechanism::{Linkage, Unit};
 use serde::Serialize;
@@ -56,7 +58,12 @@ fn record(loaded: &LoadedLinkage, input: CrankMotion) -> LoadRecord {
 }
 
 /// Returns the result at a crank angle in degrees; `None` at one that is open, undetermined or a toggle.
-fn at(loaded: &LoadedLinkage, crank_deg: f64, input: CrankMotion, scratch: &mut Scratch) -> Option<Box<Instant>> {
+fn at(
+    loaded: &LoadedLinkage,
+    crank_deg: f64,
+    input: CrankMotion,
+    scratch: &mut Scratch,
+) -> Option<Box<Instant>> {
     loaded.at(crank_deg.to_radians(), input, scratch).ok().map(Box::new)
 }
 
@@ -66,8 +73,7 @@ impl Analysis {
     /// # Errors
     /// [`LoadError`] if the loads do not fit the linkage, or the analysis has no unit.
     pub fn add_loads(&mut self, loads: &Loads) -> Result<(), LoadError> {
-        let input =
-            CrankMotion { speed_rad_s: self.omega2_rad_s, acceleration_rad_s2: self.alpha2_rad_s2 };
+        let input = CrankMotion { speed_rad_s: self.omega2_rad_s, acceleration_rad_s2: self.alpha2_rad_s2 };
         for configuration in &mut self.configurations {
             let loaded = prepared(&Linkage::FourBar(configuration.linkage), self.unit, loads)?;
             let scratch = &mut loaded.scratch();
@@ -88,8 +94,7 @@ impl MechanismAnalysis {
     /// [`LoadError`] if the loads do not fit the linkage, or the analysis has no unit.
     pub fn add_loads(&mut self, linkage: &Linkage, loads: &Loads) -> Result<(), LoadError> {
         let loaded = prepared(linkage, self.unit, loads)?;
-        let input =
-            CrankMotion { speed_rad_s: self.omega2_rad_s, acceleration_rad_s2: self.alpha2_rad_s2 };
+        let input = CrankMotion { speed_rad_s: self.omega2_rad_s, acceleration_rad_s2: self.alpha2_rad_s2 };
         let scratch = &mut loaded.scratch();
         for row in &mut self.rows {
             row.loads = at(&loaded, row.crank_deg, input, scratch);

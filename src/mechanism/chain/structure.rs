@@ -41,8 +41,11 @@ impl Chain {
                     structure.bodies.extend([self.link(links), self.block(made, line, made)]);
                     body_of.push(one);
                     links += 1;
-                    let pairs =
-                        [Pair::pin(p, [on, one]), Pair::pin(made, [one, two]), Pair::slide(made, [rail, two])];
+                    let pairs = [
+                        Pair::pin(p, [on, one]),
+                        Pair::pin(made, [one, two]),
+                        Pair::slide(made, [rail, two]),
+                    ];
                     structure.groups.push(Group { bodies: [one, two], pairs });
                 }
                 Step::Guide { p, q, w, .. } => {

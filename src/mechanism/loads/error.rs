@@ -60,6 +60,8 @@ pub enum LoadFault {
     ForceAtFixedPoint,
     /// The two ends of a spring are the same, or both do not move.
     SameEnds,
+    /// The two bodies of a torsion spring are one.
+    SameBodies,
     /// A body whose outline does not follow from its joints.
     NoPlate(String),
     /// A number that is not finite.
@@ -80,19 +82,24 @@ impl fmt::Display for LoadFault {
             LoadFault::UnknownBody { name, .. } => write!(f, "the linkage has no body {name:?}"),
             LoadFault::UnknownJoint { name, .. } => write!(f, "the linkage has no joint or point {name:?}"),
             LoadFault::SecondMass(name) => write!(f, "{name} has its mass already, under another name"),
-            LoadFault::OnGround => f.write_str("the ground does not move: neither its mass nor a load on it counts"),
+            LoadFault::OnGround => {
+                f.write_str("the ground does not move: neither its mass nor a load on it counts")
+            }
             LoadFault::NotOnBody { joint, body, .. } => write!(f, "{joint} is not on {body}"),
             LoadFault::ForceAtFixedPoint => f.write_str("a force at a fixed point moves nothing"),
-            LoadFault::SameEnds => {
-                f.write_str("the two ends of this spring never move against each other")
+            LoadFault::SameEnds => f.write_str("the two ends of this spring never move against each other"),
+            LoadFault::SameBodies => {
+                f.write_str("a torsion spring acts between two bodies, and these are one")
             }
             LoadFault::NoPlate(name) => write!(f, "the outline of {name} does not follow from its joints"),
             LoadFault::NotFinite(value) => write!(f, "{value} is not a finite number"),
             LoadFault::Negative(value) => write!(f, "{value} is negative"),
-            LoadFault::BadTable => f.write_str(
-                "a table needs two rows or more, with ascending crank angles within one turn",
-            ),
-            LoadFault::NoUnit => f.write_str("the linkage has no unit, so that its lengths in metres are not known"),
+            LoadFault::BadTable => {
+                f.write_str("a table needs two rows or more, with ascending crank angles within one turn")
+            }
+            LoadFault::NoUnit => {
+                f.write_str("the linkage has no unit, so that its lengths in metres are not known")
+            }
             LoadFault::NoChain => f.write_str("the linkage is beyond the limits of a chain"),
         }
     }
@@ -103,13 +110,22 @@ impl LoadFault {
     pub fn remedy(&self) -> String {
         match self {
             LoadFault::UnknownBody { known, .. } => format!("bodies of this linkage: {}", listed(known)),
-            LoadFault::UnknownJoint { known, .. } => format!("joints and points of this linkage: {}", listed(known)),
+            LoadFault::UnknownJoint { known, .. } => {
+                format!("joints and points of this linkage: {}", listed(known))
+            }
             LoadFault::SecondMass(_) => "keep one of the two tables".into(),
             LoadFault::OnGround => "name a body that moves, or leave this out".into(),
             LoadFault::NotOnBody { joint, carriers, .. } => format!("{joint} is on {}", listed(carriers)),
-            LoadFault::ForceAtFixedPoint => "name a joint, or a place on a body: { body = \"coupler\", at = [20, 5] }".into(),
-            LoadFault::SameEnds => "name two places on two bodies, one of which may be a fixed point [x, y]".into(),
-            LoadFault::NoPlate(_) => "give mass_kg, center and inertia_kg_m2 in place of density_kg_m3".into(),
+            LoadFault::ForceAtFixedPoint => {
+                "name a joint, or a place on a body: { body = \"coupler\", at = [20, 5] }".into()
+            }
+            LoadFault::SameEnds => {
+                "name two places on two bodies, one of which may be a fixed point [x, y]".into()
+            }
+            LoadFault::SameBodies => "name another body, or leave `against` out for the ground".into(),
+            LoadFault::NoPlate(_) => {
+                "give mass_kg, center and inertia_kg_m2 in place of density_kg_m3".into()
+            }
             LoadFault::NotFinite(_) => "write a finite number".into(),
             LoadFault::Negative(_) => "write a number of 0 or more".into(),
             LoadFault::BadTable => "write rows such as [[0, 5], [90, 8], [270, 2]]".into(),

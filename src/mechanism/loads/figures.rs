@@ -19,16 +19,19 @@ use super::kinematics::Kinematics;
 use super::loaded::{LoadedLinkage, Scratch};
 use super::peaks::largest;
 use super::resolve::SpringOn;
+use crate::mechanism::Complex;
 use crate::mechanism::any::Status;
 use crate::mechanism::four_bar::motion::CrankMotion;
-use crate::mechanism::structure::PairKind;
 use crate::mechanism::length;
-use crate::mechanism::Complex;
+use crate::mechanism::structure::PairKind;
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 
 /// Number of samples of a full turn.
 pub const SAMPLES: usize = 720;
+/// The number of pairs above which the largest sample of each pair's force is its peak: a refinement would take longer than all
+/// samples.
+pub const REFINED_PAIRS: usize = 32;
 /// The part of an arc at each of its ends that is left out, radians: 1 degree.
 pub const MARGIN: f64 = PI / 180.0;
 
@@ -75,6 +78,14 @@ pub struct Fluctuation {
     /// I_f, kg m^2, the inertia of a flywheel on the crank that halves the coefficient; absent as that is.
     #[serde(rename = "halving_flywheel_kg_m2", skip_serializing_if = "Option::is_none")]
     pub halving_flywheel: Option<f64>,
+}
+
+impl Fluctuation {
+    /// Computes the inertia of a flywheel on the crank (kg m^2) that brings the coefficient of fluctuation to a value: E/(k omega^2) -
+    /// J, 0 if it is below that without one; `None` as the coefficient.
+    pub fn flywheel_for(&self, coefficient: f64) -> Option<f64> {
+        self.coefficient.map(|own| (self.reflected_inertia * (own / coefficient - 1.0)).max(0.0))
+    }
 }
 
 /// Figures over the range of the crank.
@@ -200,13 +211,20 @@ impl LoadedLinkage {
         let full_turn = range.turns_fully;
         Some(LoadFigures {
             full_turn,
-            arcs_deg: if full_turn { Vec::new() } else { stretches.iter().map(|arc| arc.map(f64::to_degrees)).collect() },
+            arcs_deg: if full_turn {
+                Vec::new()
+            } else {
+                stretches.iter().map(|arc| arc.map(f64::to_degrees)).collect()
+            },
             left_out_deg: left_out(&sweeps),
             torque_peak,
             torque_rms: mean_sq.sqrt(),
             torque_mean: mean,
             power_mean: mean * input.speed_rad_s,
-            fluctuation: sweeps.first().filter(|_| full_turn).and_then(|sweep| fluctuation(sweep, input.speed_rad_s)),
+            fluctuation: sweeps
+                .first()
+                .filter(|_| full_turn)
+                .and_then(|sweep| fluctuation(sweep, input.speed_rad_s)),
             joints,
             shaking_force,
             shaking_moment,
@@ -217,7 +235,13 @@ impl LoadedLinkage {
         })
     }
 
-    fn sweep(&self, [from, to]: [f64; 2], periodic: bool, input: CrankMotion, scratch: &mut Scratch) -> Sweep {
+    fn sweep(
+        &self,
+        [from, to]: [f64; 2],
+        periodic: bool,
+        input: CrankMotion,
+        scratch: &mut Scratch,
+    ) -> Sweep {
         let steps = (((to - from) / TAU * SAMPLES as f64).ceil() as usize).max(24);
         let (step, count) = ((to - from) / steps as f64, if periodic { steps } else { steps + 1 });
         let samples = (0..count).map(|i| self.sample(from + step * i as f64, input, scratch).ok()).collect();
@@ -240,13 +264,21 @@ impl LoadedLinkage {
     }
 
     /// Returns the value of largest size of a quantity over all sweeps.
-    fn peak(&self, sweeps: &[Sweep], quantity: usize, input: CrankMotion, scratch: &mut Scratch) -> Option<Peak> {
+    fn peak(
+        &self,
+        sweeps: &[Sweep],
+        quantity: usize,
+        input: CrankMotion,
+        scratch: &mut Scratch,
+    ) -> Option<Peak> {
         let mut best: Option<(f64, f64)> = None;
         for sweep in sweeps {
             let of = |sample: &Option<Sample>| sample.as_ref().map(|sample| sample.values[quantity].abs());
             let sizes: Vec<Option<f64>> = sweep.samples.iter().map(of).collect();
+            let is_refined = quantity < OF_PAIRS || self.pairs().len() <= REFINED_PAIRS;
             let found = largest(&sizes, (sweep.begin, sweep.step), sweep.periodic, |angle| {
-                self.sample(angle, input, scratch).ok().map(|sample| sample.values[quantity].abs())
+                let sample = if is_refined { self.sample(angle, input, scratch).ok() } else { None };
+                sample.map(|sample| sample.values[quantity].abs())
             });
             best = match (best, found) {
                 (Some(best), Some(found)) if found.1 <= best.1 => Some(best),
@@ -324,7 +356,8 @@ fn fluctuation(sweep: &Sweep, speed: f64) -> Option<Fluctuation> {
         energies.push(energies[i] + sweep.step / 24.0 * (13.0 * (here + next) - before - after));
     }
     let vertex = |i: usize| {
-        let [before, here, next] = [energies[(i + count - 1) % count], energies[i], energies[(i + 1) % count]];
+        let [before, here, next] =
+            [energies[(i + count - 1) % count], energies[i], energies[(i + 1) % count]];
         let (slope, bend) = (0.5 * (next - before), before - 2.0 * here + next);
         let shift = if bend == 0.0 { 0.0 } else { -slope / bend };
         if shift.abs() <= 1.0 { here + 0.5 * slope * shift } else { here }

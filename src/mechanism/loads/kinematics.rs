@@ -160,7 +160,8 @@ impl Kinematics {
     /// Returns the state of a body whose frame follows from the joints and from earlier bodies. The ground's origin is the crank's
     /// pivot, about which its moments count.
     fn state(&self, crank_pivot: usize, body: &Body) -> BodyState {
-        let still = |origin: Moving, direction: Complex| BodyState { origin, direction, first: 0.0, second: 0.0 };
+        let still =
+            |origin: Moving, direction: Complex| BodyState { origin, direction, first: 0.0, second: 0.0 };
         match body.frame {
             Frame::Ground | Frame::Coupler(_) => still(self.joints[crank_pivot], Complex::new(1.0, 0.0)),
             Frame::Joints([from, to]) => {

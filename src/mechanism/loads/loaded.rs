@@ -1,12 +1,12 @@
 //! A linkage with its loads, prepared for many positions.
 
+use super::Loads;
 use super::applied::{Applied, Wrench};
 use super::error::{LoadError, LoadFault, LoadKey};
 use super::instant::{Instant, JointForce};
 use super::kinematics::{Kinematics, Source};
 use super::newton::{Reaction, balance};
 use super::resolve::{Names, Resolved, SpringOn};
-use super::Loads;
 use crate::mechanism::any::{CrankRange, Mechanism, Status};
 use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::mechanism::structure::{GROUND, OutputBody, Pair, PairKind, Structure};
@@ -139,7 +139,7 @@ impl LoadedLinkage {
         }
     }
 
-    /// Returns whether the linkage has an output, and whether that is a slider.
+    /// Returns the output; `None` of kinds without a certain one.
     pub fn output(&self) -> Option<OutputBody> {
         self.structure.output
     }

@@ -43,8 +43,6 @@ pub mod loaded;
 pub mod newton;
 mod peaks;
 mod resolve;
-#[cfg(test)]
-mod tests;
 
 pub use error::{LoadError, LoadFault, LoadKey};
 pub use figures::{LoadFigures, Peak};

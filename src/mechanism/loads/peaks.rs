@@ -27,7 +27,8 @@ pub(super) fn largest(
         let below = |by: isize| at(i, by).is_none_or(|there| there <= here);
         below(-1) && below(1)
     };
-    let mut peaks: Vec<(usize, f64)> = samples.iter().enumerate().filter_map(|(i, v)| Some((i, (*v)?))).collect();
+    let mut peaks: Vec<(usize, f64)> =
+        samples.iter().enumerate().filter_map(|(i, v)| Some((i, (*v)?))).collect();
     peaks.retain(|(i, here)| *here >= WORTH_REFINING * greatest && is_peak(*i, *here));
     peaks.sort_by(|p, q| q.1.total_cmp(&p.1).then(p.0.cmp(&q.0)));
     let mut best: Option<(f64, f64)> = None;
@@ -45,11 +46,7 @@ pub(super) fn largest(
 }
 
 /// Searches the largest value between two places; `None` if a value is missing.
-fn golden(
-    mut low: f64,
-    mut high: f64,
-    value: &mut impl FnMut(f64) -> Option<f64>,
-) -> Option<(f64, f64)> {
+fn golden(mut low: f64, mut high: f64, value: &mut impl FnMut(f64) -> Option<f64>) -> Option<(f64, f64)> {
     let share = 0.5 * (5_f64.sqrt() - 1.0);
     let inner = |low: f64, high: f64| [high - share * (high - low), low + share * (high - low)];
     let [mut p, mut q] = inner(low, high);

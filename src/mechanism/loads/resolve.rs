@@ -156,7 +156,7 @@ impl Names<'_> {
             let joints: Vec<&str> =
                 bodies[body].joints.iter().map(|(joint, _)| self.joints[*joint].as_str()).collect();
             let is_pair = |p: &&str| joints.iter().any(|q| p != q && format!("{p}-{q}") == name);
-            joints.join("-") == name || joints.iter().any(|p| is_pair(p))
+            joints.join("-") == name || joints.iter().any(is_pair)
         };
         let mut found = (1..bodies.len()).filter(|body| names_it(*body));
         match (found.next(), found.next()) {
@@ -296,7 +296,7 @@ impl Names<'_> {
                 let body = self.body(LoadKey::Spring(i, "body"), &bodies[0])?;
                 let against = self.body(LoadKey::Spring(i, "against"), &bodies[1])?;
                 if body == against {
-                    return error(LoadKey::Spring(i, "against"), LoadFault::SameEnds);
+                    return error(LoadKey::Spring(i, "against"), LoadFault::SameBodies);
                 }
                 let (rate, free_angle) = (*rate, *free_angle);
                 Ok(SpringOn::Torsion { bodies: [body, against], rate, free_angle })

@@ -1,10 +1,10 @@
 //! Random linkages of every kind, each with a crank angle at which it closes well, and random loads on them.
 
 use crate::dyad_chains::drawn;
+use linkwright::internals::mechanism::chain::{SliderLine, Stage};
 use linkwright::internals::mechanism::loads::{
     BodyMass, Couple, Force, ForceVector, Loads, Mass, Place, Quantity, Spring,
 };
-use linkwright::internals::mechanism::chain::{SliderLine, Stage};
 use linkwright::internals::mechanism::{
     AssemblyMode, ChainBuilder, Complex, CouplerSide, DyadChainKind, FourBar, InvertedSliderCrank, Linkage,
     MultiLoop, NaturalCoordinates, SliderCrank, cross, dot, xy,
@@ -128,8 +128,14 @@ fn chain(draws: &mut Draws, angle: f64) -> (Linkage, f64) {
                 let line = uniform(draws, -PI, PI);
                 let u = Complex::from_polar(1.0, line);
                 let side = AssemblyMode::of(dot(u, at - places[p]));
-                builder =
-                    builder.slider(&names[n], &names[p], (at - places[p]).norm(), xy(at + u * 0.7), line, side);
+                builder = builder.slider(
+                    &names[n],
+                    &names[p],
+                    (at - places[p]).norm(),
+                    xy(at + u * 0.7),
+                    line,
+                    side,
+                );
                 links.push([p, n]);
                 at
             }
@@ -168,7 +174,7 @@ fn chain(draws: &mut Draws, angle: f64) -> (Linkage, f64) {
 }
 
 fn quantity<const N: usize>(draws: &mut Draws, low: f64, high: f64) -> Quantity<N> {
-    let mut value = |draws: &mut Draws| std::array::from_fn(|_| uniform(draws, low, high));
+    let value = |draws: &mut Draws| std::array::from_fn(|_| uniform(draws, low, high));
     if uniform(draws, 0.0, 1.0) < 0.7 {
         return Quantity::Constant(value(draws));
     }

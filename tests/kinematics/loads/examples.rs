@@ -51,8 +51,11 @@ pub fn slider_crank(crank: f64, coupler: f64) -> Linkage {
 
 #[test]
 fn a_crank_that_alone_has_mass_is_a_pendulum() {
-    let loads =
-        Loads { gravity: [0.0, -9.81], bodies: vec![mass("crank", 2.0, [0.01, 0.0], 3e-4)], ..Loads::default() };
+    let loads = Loads {
+        gravity: [0.0, -9.81],
+        bodies: vec![mass("crank", 2.0, [0.01, 0.0], 3e-4)],
+        ..Loads::default()
+    };
     let loaded = LoadedLinkage::new(&Linkage::FourBar(romero()), Unit::Cm, &loads).expect("names");
     let scratch = &mut loaded.scratch();
     for i in 0..24 {
@@ -117,12 +120,19 @@ fn a_piston_has_the_inertia_torque_of_the_literature() {
         let (sin, cos) = angle.sin_cos();
         let root = (l * l - r * r * sin * sin).sqrt();
         let first = -r * sin - r * r * sin * cos / root;
-        let second = -r * cos - r * r * (cos * cos - sin * sin) / root - r.powi(4) * sin * sin * cos * cos / root.powi(3);
+        let second = -r * cos
+            - r * r * (cos * cos - sin * sin) / root
+            - r.powi(4) * sin * sin * cos * cos / root.powi(3);
         let torque = m * first * second * omega * omega;
         let at = loaded.at(angle, CrankMotion::steady(omega), scratch).expect("it closes");
         assert!((at.torque - torque).abs() < 1e-12 * m * r * r * omega * omega, "{} {torque}", at.torque);
         let share = r / l;
-        let printed = -0.5 * m * r * r * omega * omega
+        let printed = -0.5
+            * m
+            * r
+            * r
+            * omega
+            * omega
             * (0.5 * share * sin - (2.0 * angle).sin() - 1.5 * share * (3.0 * angle).sin());
         assert!((at.torque - printed).abs() < share * share * m * r * r * omega * omega);
         // The rod without mass pushes along itself, and the wall bears what is across the line: N = F tan(psi).
@@ -212,7 +222,8 @@ fn joint_forces_are_those_of_a_free_body_computation() {
         // [A, C, D, B, P] in metres, at an angle.
         let points = |angle: f64| {
             let joints = linkage.position(angle).joints().expect("it closes");
-            let own = [linkage.crank_pivot(), joints.crank_pin, joints.follower_pin, linkage.follower_pivot()];
+            let own =
+                [linkage.crank_pivot(), joints.crank_pin, joints.follower_pin, linkage.follower_pivot()];
             let [a, c, d, b] = own.map(|z| z / 100.0);
             [a, c, d, b, joints.coupler_point / 100.0]
         };
@@ -227,8 +238,7 @@ fn joint_forces_are_those_of_a_free_body_computation() {
         };
         let h = 1e-3;
         let second = |at: &dyn Fn(f64) -> Complex| {
-            let [two, one, here, next, after] =
-                [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| at(angle + k * h));
+            let [two, one, here, next, after] = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| at(angle + k * h));
             (-after + next * 16.0 - here * 30.0 + one * 16.0 - two) / (12.0 * h * h)
         };
         let [a, c, d, b, p] = points(angle);
@@ -240,7 +250,8 @@ fn joint_forces_are_those_of_a_free_body_computation() {
             let (m, _, inertia) = masses[body];
             let g = center(body, angle);
             let acceleration = second(&|angle| center(body, angle)) * (omega * omega);
-            let turning = second(&|at| (state(at)[body].1 * state(angle)[body].1.conj()).ln()).im * omega * omega;
+            let turning =
+                second(&|at| (state(at)[body].1 * state(angle)[body].1.conj()).ln()).im * omega * omega;
             let pins: &[(usize, Complex, f64)] = match body {
                 0 => &[(0, a, 1.0), (1, c, -1.0)],
                 1 => &[(1, c, 1.0), (2, d, 1.0)],
@@ -278,7 +289,8 @@ fn joint_forces_are_those_of_a_free_body_computation() {
         }
         assert!((at.torque - found[8]).abs() < 1e-7 * size);
         // The ground bears the pins and the spring; the sum of all outer forces is m a.
-        let sum: Complex = [0, 2].map(|k| Complex::new(pins[k][0], pins[k][1])).iter().sum::<Complex>() - pull;
+        let sum: Complex =
+            [0, 2].map(|k| Complex::new(pins[k][0], pins[k][1])).iter().sum::<Complex>() - pull;
         let shaking = Complex::new(at.shaking_force[0], at.shaking_force[1]);
         assert!((sum - shaking).norm() < 1e-10 * size);
     }
@@ -292,7 +304,8 @@ fn a_table_is_linear_between_its_rows_and_periodic() {
     let loaded = LoadedLinkage::new(&Linkage::FourBar(romero()), Unit::Cm, &loads).expect("names");
     let scratch = &mut loaded.scratch();
     let still = CrankMotion::steady(0.0);
-    for (deg, moment) in [(90.0, 10.0), (135.0, 15.0), (180.0, 20.0), (225.0, 10.0), (270.0, 0.0), (0.0, 5.0), (-270.0, 10.0)]
+    for (deg, moment) in
+        [(90.0, 10.0), (135.0, 15.0), (180.0, 20.0), (225.0, 10.0), (270.0, 0.0), (0.0, 5.0), (-270.0, 10.0)]
     {
         let torque = loaded.torque(f64::to_radians(deg), still, scratch).expect("it closes");
         assert!((torque + moment).abs() < 1e-12, "{deg}: {torque}");
@@ -301,7 +314,8 @@ fn a_table_is_linear_between_its_rows_and_periodic() {
 
 #[test]
 fn a_toggle_has_a_status_and_no_number() {
-    let linkage = FourBar::new(NaturalCoordinates { follower: 1.0, coupler: 2.0, ..romero().natural_coordinates() });
+    let linkage =
+        FourBar::new(NaturalCoordinates { follower: 1.0, coupler: 2.0, ..romero().natural_coordinates() });
     let Ok(linkage) = linkage else { panic!("a linkage") };
     let any = Linkage::FourBar(linkage);
     let loads = Loads { forces: vec![push(Place::Joint("P".into()), [0.0, -10.0])], ..Loads::default() };
@@ -329,7 +343,8 @@ fn a_plate_has_the_mass_of_its_outline() {
     let torque = loaded.torque(0.0, CrankMotion::steady(0.0), &mut loaded.scratch()).expect("it closes");
     assert!((torque / (7850.0 * 0.003 * area * 9.81 * 0.025) - 1.0).abs() < 1e-12);
     let bodies = vec![BodyMass { body: "block".into(), mass: plate }];
-    let refused = LoadedLinkage::new(&slider_crank(50.0, 200.0), Unit::Mm, &Loads { bodies, ..Loads::default() });
+    let refused =
+        LoadedLinkage::new(&slider_crank(50.0, 200.0), Unit::Mm, &Loads { bodies, ..Loads::default() });
     let words = refused.expect_err("a block has no outline").to_string();
     assert!(words.contains("the outline of block does not follow from its joints"), "{words}");
 }

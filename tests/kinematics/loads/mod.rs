@@ -16,6 +16,9 @@ const LINKAGES: usize = 1000;
 /// The largest velocity coefficient of a joint, in lengths of the longest: below it no toggle is near enough that rounding counts.
 const FASTEST: f64 = 20.0;
 
+/// The peak over the rms of a torque above which it is a spike of a linkage next to a change point, narrower than half a degree.
+const SPIKE: f64 = 20.0;
+
 /// Drops the springs that the linkage refuses: between two places of one body.
 fn fitting(linkage: &Linkage, mut loads: Loads) -> (LoadedLinkage, Loads) {
     loop {
@@ -23,7 +26,9 @@ fn fitting(linkage: &Linkage, mut loads: Loads) -> (LoadedLinkage, Loads) {
             Ok(loaded) => return (loaded, loads),
             Err(error) => {
                 let at = match (&error.key, &error.fault) {
-                    (linkwright::internals::mechanism::loads::LoadKey::Spring(i, _), LoadFault::SameEnds) => *i,
+                    (linkwright::internals::mechanism::loads::LoadKey::Spring(i, _), LoadFault::SameEnds) => {
+                        *i
+                    }
                     (linkwright::internals::mechanism::loads::LoadKey::Force(i, _), LoadFault::OnGround) => {
                         loads.forces.remove(*i);
                         continue;
@@ -63,7 +68,9 @@ fn torques_by_power_and_by_newton_euler_agree_on_random_linkages_of_each_kind() 
             for input in [moving, CrankMotion::steady(0.0)] {
                 let power = loaded.torque_and_size(angle, input, scratch);
                 let newton = loaded.balance(angle, input, scratch);
-                let ((power, size), Ok(())) = (power.expect("it closes"), newton) else { panic!("{kind} {seed}") };
+                let ((power, size), Ok(())) = (power.expect("it closes"), newton) else {
+                    panic!("{kind} {seed}")
+                };
                 // The torque is what is left of terms of this size.
                 let off = (scratch.torque() - power).abs();
                 worst = worst.max(off / (power.abs().max(1e-3 * size)));
@@ -118,7 +125,8 @@ fn over_a_turn_at_constant_speed_conservative_loads_take_no_work() {
             let (linkage, _) = linkage(kind, seed);
             let range = linkage.mechanism().crank_range();
             let smooth = (0..72).all(|i| {
-                let motion = linkage.mechanism().motion_at(TAU * f64::from(i) / 72.0, CrankMotion::steady(1.0));
+                let motion =
+                    linkage.mechanism().motion_at(TAU * f64::from(i) / 72.0, CrankMotion::steady(1.0));
                 let usual = |z: &Option<linkwright::Complex>| z.is_some_and(|z| z.norm() < 60.0);
                 motion.pose.status == Status::Ok && motion.accelerations.iter().all(usual)
             });
@@ -143,6 +151,7 @@ fn over_a_turn_at_constant_speed_conservative_loads_take_no_work() {
 
 #[test]
 fn peaks_are_not_below_any_of_dense_samples_and_close_to_the_largest() {
+    let mut compared = 0;
     for (i, kind) in KINDS.into_iter().enumerate() {
         for seed in 1..400 {
             let (linkage, angle) = linkage(kind, seed);
@@ -160,7 +169,9 @@ fn peaks_are_not_below_any_of_dense_samples_and_close_to_the_largest() {
                     continue;
                 }
                 torque = torque.max(scratch.torque().abs());
-                for ((force, joint), [x, y]) in forces.iter_mut().zip(&figures.joints).zip(scratch.reactions()) {
+                for ((force, joint), [x, y]) in
+                    forces.iter_mut().zip(&figures.joints).zip(scratch.reactions())
+                {
                     *force = force.max(if joint.slides { x.abs() } else { x.hypot(*y) });
                 }
             }
@@ -169,12 +180,17 @@ fn peaks_are_not_below_any_of_dense_samples_and_close_to_the_largest() {
                 assert!(peak.abs() >= dense * (1.0 - 1e-9), "{kind} {seed}: {peak} {dense}");
                 assert!(peak.abs() <= dense * (1.0 + 1e-3), "{kind} {seed}: {peak} {dense}");
             };
+            if torque > SPIKE * figures.torque_rms {
+                continue;
+            }
+            compared += 1;
             near(figures.torque_peak.value, torque);
             for (joint, force) in figures.joints.iter().zip(forces) {
                 near(joint.force.value, force);
             }
         }
     }
+    assert!(compared > 100, "{compared}");
 }
 
 #[test]
@@ -190,4 +206,26 @@ fn a_spring_that_is_wound_past_half_a_turn_is_named() {
     let figures = loaded.figures(CrankMotion::steady(1.0)).expect("it closes");
     // The coupler rocks.
     assert_eq!(figures.overwound_springs, [1]);
+}
+
+#[test]
+fn thousands_of_angles_of_a_six_bar_take_milliseconds() {
+    let (linkage, _) = (1..)
+        .map(|seed| linkage("six-bar", seed))
+        .find(|(linkage, _)| linkage.mechanism().crank_range().turns_fully)
+        .expect("one turns fully");
+    let (loaded, _) = fitting(&linkage, loads(&linkage, 5, false));
+    let scratch = &mut loaded.scratch();
+    let mut best = std::time::Duration::MAX;
+    for _ in 0..5 {
+        let begun = std::time::Instant::now();
+        for i in 0..3600 {
+            let angle = TAU * f64::from(i) / 3600.0;
+            loaded.balance(angle, CrankMotion::steady(3.0), scratch).expect("it turns");
+        }
+        best = best.min(begun.elapsed());
+    }
+    println!("3,600 angles: {best:?}");
+    // 20 ms are asked for of a release build on a machine of its own (benches/loads.rs); here others are building.
+    assert!(best.as_millis() < 200, "{best:?}");
 }
