@@ -198,7 +198,7 @@ fn status(row: &MechanismRow) -> String {
 }
 
 /// Returns one row for each crank angle: `crank_deg`, then x, y, vx, vy, ax, ay of every moving point, then coupler and
-/// slider of kinds that have one, then `status`.
+/// slider of kinds that have one, then the columns of loads if there are any (below a comment), then `status`.
 pub fn mechanism_csv(analysis: &MechanismAnalysis) -> String {
     let names: Vec<String> =
         analysis.rows.first().map_or(Vec::new(), |row| row.points.iter().map(|p| p.name.clone()).collect());

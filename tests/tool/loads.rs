@@ -56,13 +56,13 @@ fn the_csv_has_torque_and_joint_forces_below_a_comment_on_their_bodies() {
     let rows: Vec<Vec<f64>> =
         lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()).collect();
     let y = |i: usize| rows[(i + 36) % 36][column("Py")] / 100.0;
-    for i in 0..36 {
+    for (i, row) in rows.iter().enumerate() {
         let slope = (8.0 * (y(i + 1) - y(i + 35)) - (y(i + 2) - y(i + 34))) / (12.0 * 10_f64.to_radians());
-        let torque = rows[i][first];
+        let torque = row[first];
         assert!((torque - 9.81 * slope).abs() < 2e-3, "{i}: {torque} {}", 9.81 * slope);
         // All outer forces together: the ground bears the weight.
-        let bears = rows[i][column("Fy_A_N")] + rows[i][column("Fy_B_N")];
-        assert!((bears + 9.81).abs() < 1e-9 && (rows[i][column("shaking_Fy_N")] - bears).abs() < 1e-9);
+        let bears = row[column("Fy_A_N")] + row[column("Fy_B_N")];
+        assert!((bears + 9.81).abs() < 1e-9 && (row[column("shaking_Fy_N")] - bears).abs() < 1e-9);
     }
     // Without loads nothing changes.
     let plain = ["analyze", "hoeken.toml", "--cycle", "36", "--csv", "plain.csv"];

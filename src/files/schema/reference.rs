@@ -344,6 +344,7 @@ impl<'a> Page<'a> {
         match value.get("minItems").and_then(Value::as_u64) {
             Some(n) if value.get("maxItems").and_then(Value::as_u64) == Some(n) => match (n, item.as_str()) {
                 (2, "number") => "[number, number]".into(),
+                (3, "number") => "[number, number, number]".into(),
                 _ => format!("list of {n}: {item} each"),
             },
             _ => format!("list: {item} each"),

@@ -5,7 +5,7 @@ use linkwright::internals::mechanism::loads::{
     BodyMass, Couple, Force, ForceVector, LoadedLinkage, Loads, Mass, Place, Quantity, Spring,
 };
 use linkwright::internals::mechanism::{
-    AssemblyMode, Complex, CouplerSide, FourBar, Linkage, NaturalCoordinates, SliderCrank,
+    AssemblyMode, ChainBuilder, Complex, CouplerSide, FourBar, Linkage, NaturalCoordinates, SliderCrank,
     SliderCrankParameters, Status, Unit, cross, dot, turned,
 };
 use nalgebra::{DMatrix, DVector};
@@ -347,4 +347,39 @@ fn a_plate_has_the_mass_of_its_outline() {
         LoadedLinkage::new(&slider_crank(50.0, 200.0), Unit::Mm, &Loads { bodies, ..Loads::default() });
     let words = refused.expect_err("a block has no outline").to_string();
     assert!(words.contains("the outline of block does not follow from its joints"), "{words}");
+}
+
+#[test]
+fn a_chain_bears_its_loads_as_the_same_slider_crank_does() {
+    let chain = ChainBuilder::new()
+        .pivot("A", [0.0, 0.0])
+        .crank("A", "C", 50.0)
+        .slider("D", "C", 200.0, [0.0, 0.0], 0.0, AssemblyMode::Plus)
+        .build()
+        .expect("a chain");
+    let of = |crank: &str, coupler: &str, block: &str| Loads {
+        gravity: [0.3, -9.81],
+        bodies: vec![
+            mass(crank, 0.5, [0.02, 0.004], 1e-4),
+            mass(coupler, 0.9, [0.08, -0.01], 2e-3),
+            mass(block, 0.4, [0.01, 0.02], 3e-4),
+        ],
+        forces: vec![push(Place::Joint("D".into()), [-20.0, 5.0])],
+        couples: vec![Couple { body: coupler.into(), moment: Quantity::Constant([0.2]) }],
+        ..Loads::default()
+    };
+    let one = LoadedLinkage::new(&slider_crank(50.0, 200.0), Unit::Mm, &of("crank", "coupler", "block"));
+    let two = LoadedLinkage::new(&Linkage::Chain(Box::new(chain)), Unit::Mm, &of("A-C", "C-D", "block-D"));
+    let (one, two) = (one.expect("names"), two.expect("names"));
+    let (first, second) = (&mut one.scratch(), &mut two.scratch());
+    for i in 0..24 {
+        let (angle, input) =
+            (TAU * f64::from(i) / 24.0, CrankMotion { speed_rad_s: 20.0, acceleration_rad_s2: -7.0 });
+        one.balance(angle, input, first).expect("it closes");
+        two.balance(angle, input, second).expect("it closes");
+        assert!((first.torque() - second.torque()).abs() < 1e-11);
+        for (a, b) in first.reactions().iter().flatten().zip(second.reactions().iter().flatten()) {
+            assert!((a - b).abs() < 1e-10, "{a} {b}");
+        }
+    }
 }
