@@ -16,6 +16,8 @@ use crate::mechanism::structure::OutputBody;
 const FIGURES: usize = 4;
 /// The largest number of pairs that the table has columns for; all are in CSV and JSON.
 const COLUMNS_OF_PAIRS: usize = 6;
+/// The largest number of pairs whose largest force is named.
+const NAMED_PAIRS: usize = 12;
 /// The largest number of crank angles that are named one by one.
 const NAMED_ANGLES: usize = 6;
 /// A coefficient of speed fluctuation of machines that run steadily (R. L. Norton, Design of Machinery: 0.01 to 0.05).
@@ -110,11 +112,10 @@ pub(super) fn words(record: &LoadRecord, omega2_rad_s: f64) -> String {
         0.0 => "; the crank stands still (statics: --rpm adds the masses' inertia).".to_owned(),
         speed => format!("; mean power {} W.", n(rounded(figures.torque_mean, figures.torque_rms) * speed)),
     });
-    if let Some(fluctuation) = &figures.fluctuation {
+    if let Some(fluctuation) = figures.fluctuation.as_ref().filter(|_| omega2_rad_s != 0.0) {
         text.push_str(&swing(fluctuation));
     }
-    let forces: Vec<String> = figures.joints.iter().map(joint).collect();
-    text.push_str(&format!(" Largest forces: {}.", forces.join(", ")));
+    text.push_str(&largest(&figures.joints));
     text.push_str(&format!(
         " Shaking force up to {}, shaking moment about the crank's pivot up to {}.",
         at(&figures.shaking_force, "N"),
@@ -155,6 +156,21 @@ fn swing(fluctuation: &Fluctuation) -> String {
     text
 }
 
+/// Returns the largest force of each pair in order; of many pairs those with the largest alone.
+fn largest(joints: &[JointPeak]) -> String {
+    let size = |i: &usize| joints[*i].force.value.abs();
+    let mut shown: Vec<usize> = (0..joints.len()).collect();
+    shown.sort_by(|i, j| size(j).total_cmp(&size(i)));
+    shown.truncate(NAMED_PAIRS);
+    shown.sort_unstable();
+    let forces: Vec<String> = shown.iter().map(|i| joint(&joints[*i])).collect();
+    let more = match joints.len() - shown.len() {
+        0 => String::new(),
+        more => format!(", and less at {more} more"),
+    };
+    format!(" Largest forces: {}{more}.", forces.join(", "))
+}
+
 fn joint(joint: &JointPeak) -> String {
     let [name, on, from] = [&joint.at, &joint.on, &joint.from].map(|name| clean(name));
     let force = at(&Peak { value: joint.force.value.abs(), ..joint.force }, "N");
@@ -167,23 +183,18 @@ fn joint(joint: &JointPeak) -> String {
 
 /// Returns the least mechanical advantage at the traced point and at the output.
 fn advantages(figures: &LoadFigures, output: Option<OutputBody>) -> String {
-    let mut text = String::new();
-    if let Some(least) = &figures.advantage_least {
-        text.push_str(&format!(
-            " For each N m on the crank the traced point pushes with {} or more",
-            at(least, "N")
-        ));
-        match (&figures.output_advantage_least, output) {
-            (Some(least), Some(OutputBody::Turns(_))) => {
-                text.push_str(&format!(", the output turns with {} or more.", at(least, "N m")));
-            }
-            (Some(least), Some(OutputBody::Slides(_))) => {
-                text.push_str(&format!(", the slider with {} or more.", at(least, "N")));
-            }
-            _ => text.push('.'),
-        }
-    }
-    text
+    let least = |peak: &Peak, unit: &str| {
+        format!("{} {unit} (at {})", significant(peak.value, FIGURES), degrees(peak.crank_deg))
+    };
+    let Some(at_point) = &figures.advantage_least else { return String::new() };
+    let point = format!(" Each N m on the crank gives at least {} at the traced point", least(at_point, "N"));
+    let of_output = figures.output_advantage_least.as_ref().zip(output);
+    point
+        + &of_output.map_or_else(String::new, |(peak, output)| match output {
+            OutputBody::Turns(_) => format!(" and {} at the output", least(peak, "N m")),
+            OutputBody::Slides(_) => format!(" and {} at the slider", least(peak, "N")),
+        })
+        + "."
 }
 
 /// Returns the crank angles without a result, and the springs that are wound too far.

@@ -311,7 +311,8 @@ impl LoadedLinkage {
 fn degrees(angle: f64, periodic: bool) -> f64 {
     let degrees = angle.to_degrees();
     let turned = if periodic { degrees.rem_euclid(360.0) } else { degrees };
-    if turned >= 360.0 { 0.0 } else { turned }
+    // A peak is known to far less than a millionth of a degree.
+    if periodic && turned >= 360.0 - 1e-6 { 0.0 } else { turned }
 }
 
 /// Returns the crank angles of samples without a result.

@@ -2,6 +2,7 @@
 //! of its own.
 
 mod draws;
+mod equilibrium;
 mod examples;
 
 use draws::{KINDS, linkage, loads};
