@@ -107,7 +107,7 @@ pub struct LoadFigures {
     /// The mean torque, N m.
     #[serde(rename = "torque_mean_N_m")]
     pub torque_mean: f64,
-    /// The mean power, W: 0 of a crank that stands still.
+    /// The mean power, W, over arcs in the one sense of the speed: 0 of a crank that stands still.
     #[serde(rename = "power_mean_W")]
     pub power_mean: f64,
     /// The swing of energy; absent where the crank does not turn fully.

@@ -107,8 +107,7 @@ fn every_body_of_every_kind_is_in_equilibrium() {
             found += 1;
             worst = worst.max(residual(&linkage, angle));
         }
-        println!("{kind}: {worst:e}");
-        // Differences of fourth order with this step leave about 1e-6 to truncation and rounding (eps/STEP^2).
-        assert!(worst < 1e-4, "{kind}: {worst:e}");
+        // Differences of fourth order with this step leave about eps/STEP^2 = 6e-9 to rounding, times a few for the fastest.
+        assert!(worst < 1e-6, "{kind}: {worst:e}");
     }
 }

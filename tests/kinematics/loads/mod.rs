@@ -78,7 +78,6 @@ fn torques_by_power_and_by_newton_euler_agree_on_random_linkages_of_each_kind() 
             }
             found += 1;
         }
-        println!("{kind}: {found} of {seed}, worst {worst:e}");
         assert!(worst < 1e-10, "{kind}: {worst:e}");
     }
 }
@@ -226,7 +225,6 @@ fn thousands_of_angles_of_a_six_bar_take_milliseconds() {
         }
         best = best.min(begun.elapsed());
     }
-    println!("3,600 angles: {best:?}");
     // 20 ms are asked for of a release build on a machine of its own (benches/loads.rs); here others are building.
     assert!(best.as_millis() < 200, "{best:?}");
 }
