@@ -1,7 +1,7 @@
 //! Loads of an analysis as text, as columns of a CSV, and as a chart of the torque over the crank angle.
 
 use super::analysis_text::{degrees, number};
-use super::canvas::{Area, palette};
+use super::canvas::{Area, Canvas, palette};
 use super::chart::{Abscissa, Chart, Range, Series};
 use super::grid::Align::Right;
 use super::grid::{Colour, Grid, plain};
@@ -253,9 +253,8 @@ pub(super) fn table(record: &LoadRecord, rows: &[(f64, Option<&Instant>)], colou
     format!("\n{}{}", grid.render(colour), wrapped("\n  ", "  ", note, COLUMNS))
 }
 
-/// Returns the chart of the torque; `None` of a linkage that closes at no crank angle.
-pub(super) fn sheet(record: &LoadRecord, toggles_deg: &[f64]) -> Option<Sheet> {
-    let figures = record.figures.as_ref()?;
+/// Returns the chart of the torque with its axis; `None` of torques at one crank angle alone.
+fn torque_chart(figures: &LoadFigures, toggles_deg: &[f64]) -> Option<(Chart, Abscissa)> {
     let ends = figures.torque_strands.iter().flatten().map(|(deg, _)| *deg);
     let (low, high) =
         ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
@@ -271,7 +270,26 @@ pub(super) fn sheet(record: &LoadRecord, toggles_deg: &[f64]) -> Option<Sheet> {
         unbounded: !figures.full_turn,
     };
     let (title, unit) = ("Torque on the crank", "N m".to_owned());
-    let chart = Chart { title, unit, series: vec![series], range, warning: Vec::new() };
+    Some((Chart { title, unit, series: vec![series], range, warning: Vec::new() }, abscissa))
+}
+
+/// Returns the chart of the torque as a drawing by itself; `None` of torques at one crank angle alone.
+pub(super) fn torque_svg(figures: &LoadFigures) -> Option<String> {
+    let (chart, abscissa) = torque_chart(figures, &[])?;
+    let mut canvas = Canvas::default();
+    chart.draw(&mut canvas, &abscissa, Area { x: 0.0, y: 0.0, width: FULL, height: HEIGHT });
+    Some(canvas.document(
+        FULL,
+        HEIGHT + 4.0,
+        "Torque on the crank",
+        "The torque over the crank angle, in N m over degrees.",
+    ))
+}
+
+/// Returns the chart of the torque as a sheet; `None` of a linkage that closes at no crank angle.
+pub(super) fn sheet(record: &LoadRecord, toggles_deg: &[f64]) -> Option<Sheet> {
+    let figures = record.figures.as_ref()?;
+    let (chart, abscissa) = torque_chart(figures, toggles_deg)?;
     let mut sheet = Sheet::new("Loads", FULL, HEAD + HEIGHT + 8.0);
     let area = Area { x: INSET, y: HEAD, width: FULL - 2.0 * INSET, height: HEIGHT };
     chart.draw(&mut sheet.body, &abscissa, area);

@@ -22,6 +22,7 @@
 //! | [`analysis_csv`] | an analysis as CSV: one row for each configuration and crank angle; a cell without a number is empty |
 //! | [`analysis_sheets`] | an analysis as one self-contained SVG page: the drawings of the classic papers, as far as they apply |
 //! | [`analysis_text`] | an analysis as text: the mobility in words, and the tables of positions, motion and methods |
+//! | [`balance`] | the balance of a linkage as text: what to add, and what is left before and after |
 //! | [`batch_csv`] | a batch as a table for spreadsheets and scripts: one row for each file |
 //! | [`beside`] | lines printed below the candidates: the family, warnings, cognates, the buildable candidate, the picks |
 //! | `bodies` | the drawing of a motion's body: a frame at each pose |
@@ -67,6 +68,7 @@
 pub mod analysis_csv;
 pub mod analysis_sheets;
 pub mod analysis_text;
+pub mod balance;
 pub mod batch_csv;
 mod beside;
 mod bodies;

@@ -64,7 +64,7 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
         let loads = loads.map_or_else(String::new, |loads| format!("; loads: {}", counted_loads(&loads)));
         return Ok((summary + &loads, Vec::new()));
     }
-    if has_table(path, &["[loads", "[[loads"]) {
+    if has_table(path, &["[loads", "[[loads"]) && !has_table(path, &["[task"]) {
         let loads = counted_loads(&loads_file::load_alone(path)?);
         let summary = format!("loads: {loads}; `analyze LINKAGE --loads FILE` checks them against a linkage");
         return Ok((summary, Vec::new()));

@@ -4,8 +4,10 @@
 //! and joints are checked.
 
 mod raw;
+mod write;
 
 pub(crate) use raw::RawLoads;
+pub use write::to_toml;
 
 use super::diagnostic::{Checked, Diagnostic};
 use super::input_text;
@@ -16,7 +18,7 @@ use crate::mechanism::loads::{
     BodyMass, Couple, Force, ForceVector, LoadError, LoadFault, LoadKey, LoadedLinkage, Loads, Mass, Place,
     Quantity, Spring,
 };
-use crate::mechanism::{Linkage, Unit};
+use crate::mechanism::{Linkage, LinkageKind, Unit};
 use raw::{RawBody, RawCouple, RawForce, RawPlace, RawSpring, Row};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -105,6 +107,33 @@ pub(crate) fn of_linkage_file(
         );
     };
     checked(toml, raw, unit, (linkage, unit))
+}
+
+/// Reads the loads of a problem, checked against a linkage of each kind that is searched for. Returns the unit of lengths in metres
+/// with them.
+pub(crate) fn of_problem(
+    toml: &TomlText<'_>,
+    raw: RawLoads,
+    unit: Option<Unit>,
+    linkages: &[(LinkageKind, Linkage)],
+) -> Checked<(f64, Loads)> {
+    let Some(unit) = unit else {
+        let message = "the key `unit` is missing: loads need the unit of lengths";
+        return toml.refuse_key("loads", message, UNIT_HELP);
+    };
+    let metres = unit.factor_to(Unit::M);
+    let loads = Reader { toml, metres }.loads(raw)?;
+    for (kind, linkage) in linkages {
+        if let Err(error) = LoadedLinkage::new(linkage, unit, &loads) {
+            let diagnostic = explain(toml, &error);
+            let message = match linkages.len() {
+                1 => diagnostic.message.clone(),
+                _ => format!("{}, which is searched for: {}", kind.with_article(), diagnostic.message),
+            };
+            return Err(Box::new(Diagnostic { message, ..diagnostic }));
+        }
+    }
+    Ok((metres, loads))
 }
 
 /// Converts raw loads to SI and checks them against a linkage.
@@ -208,15 +237,27 @@ impl Reader<'_, '_> {
                     let key = if raw.thickness.is_some() { "thickness" } else { "width" };
                     return refuse(key, "thickness and width go with density_kg_m3", "remove it");
                 }
+                let inertia_kg_m2 = raw.inertia_kg_m2.map_or(0.0, |inertia| inertia.0);
+                if let Some(joint) = &raw.at {
+                    if raw.center.is_some() {
+                        let help = "keep one of the two keys";
+                        return refuse("at", "two centres of mass: center and at", help);
+                    }
+                    return Ok(Mass::AtJoint { mass_kg: mass.0, joint: joint.clone(), inertia_kg_m2 });
+                }
                 Ok(Mass::Given {
                     mass_kg: mass.0,
                     center: self.point(raw.center.map_or([0.0; 2], |center| center.0)),
-                    inertia_kg_m2: raw.inertia_kg_m2.map_or(0.0, |inertia| inertia.0),
+                    inertia_kg_m2,
                 })
             }
             (None, Some(density)) => {
-                if raw.center.is_some() || raw.inertia_kg_m2.is_some() {
-                    let key = if raw.center.is_some() { "center" } else { "inertia_kg_m2" };
+                let given = [
+                    ("center", raw.center.is_some()),
+                    ("at", raw.at.is_some()),
+                    ("inertia_kg_m2", raw.inertia_kg_m2.is_some()),
+                ];
+                if let Some((key, _)) = given.into_iter().find(|(_, there)| *there) {
                     let help = "remove it, or give mass_kg in place of density_kg_m3";
                     return refuse(key, "centre and inertia of a plate follow from its outline", help);
                 }

@@ -46,6 +46,8 @@ pub(super) struct RawBody {
     /// The centre of mass along and across (to the left of) the line from the body's first joint to its second (crank A-C, coupler
     /// C-D, follower B-D; of a block and of a rod that slides along the slider's line); [0, 0] where this is missing.
     pub(super) center: Option<XY>,
+    /// In place of center: the joint or point of the body at which its centre of mass lies, such as P.
+    pub(super) at: Option<String>,
     /// The moment of inertia about the centre of mass; 0 where this is missing.
     pub(super) inertia_kg_m2: Option<Number>,
     /// In place of the mass: the density of a flat plate around the body's joints and points, such as 7850 of steel.

@@ -35,6 +35,19 @@ impl FourBar {
     }
 }
 
+impl Motion {
+    /// Returns the status of the motion.
+    pub fn status(&self) -> Status {
+        match self {
+            Motion::Definite(_) => Status::Ok,
+            Motion::Singular(_) => Status::Singular,
+            Motion::Open => Status::Open,
+            Motion::Undetermined => Status::Undetermined,
+            Motion::NotFinite => Status::NotFinite,
+        }
+    }
+}
+
 impl Mechanism for FourBar {
     fn kind(&self) -> &'static str {
         "four-bar"
@@ -62,14 +75,7 @@ impl Mechanism for FourBar {
 
     fn motion_at(&self, crank_angle: f64, input: CrankMotion) -> MechanismMotion {
         let found = self.motion(crank_angle, input);
-        let status = match found {
-            Motion::Definite(_) => Status::Ok,
-            Motion::Singular(_) => Status::Singular,
-            Motion::Open => Status::Open,
-            Motion::Undetermined => Status::Undetermined,
-            Motion::NotFinite => Status::NotFinite,
-        };
-        let pose = self.described(status, crank_angle, found.posture().as_ref());
+        let pose = self.described(found.status(), crank_angle, found.posture().as_ref());
         let moved = found.definite();
         let points = moved.map(|m| [m.crank_pin, m.follower_pin, m.coupler_point]);
         let of = |part: fn(&super::motion::PointMotion) -> Complex| {

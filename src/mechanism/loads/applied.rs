@@ -9,11 +9,9 @@
 //!
 //! w lies in (-pi, pi]. A spring of length 0 has no direction, and no force.
 
-use super::Quantity;
 use super::kinematics::{BodyState, Kinematics, Moving};
 use super::resolve::{Resolved, Spot, SpringOn, Support, Vector};
 use crate::mechanism::{Complex, cross, dot};
-use std::f64::consts::TAU;
 
 /// Force and moment on a body, the moment about the body's origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,23 +43,6 @@ impl Applied {
     fn count(&mut self, term: f64) {
         self.work += term;
         self.size += term.abs();
-    }
-}
-
-impl<const N: usize> Quantity<N> {
-    /// Returns the value at a crank angle (radians).
-    pub(super) fn at(&self, crank_angle: f64) -> [f64; N] {
-        let rows = match self {
-            Quantity::Constant(value) => return *value,
-            Quantity::Table(rows) => rows,
-        };
-        let [(begin, first), ..] = rows.as_slice() else { return [0.0; N] };
-        let angle = begin + (crank_angle - begin).rem_euclid(TAU);
-        let next = rows.partition_point(|(at, _)| *at <= angle);
-        let (from, low) = rows[next.max(1) - 1];
-        let (to, high) = rows.get(next).copied().unwrap_or((begin + TAU, *first));
-        let share = if to > from { ((angle - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
-        std::array::from_fn(|i| low[i] + (high[i] - low[i]) * share)
     }
 }
 

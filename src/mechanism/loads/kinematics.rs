@@ -10,7 +10,7 @@
 
 use crate::mechanism::any::Status;
 use crate::mechanism::chain::{self, Outcome, PointId};
-use crate::mechanism::four_bar::motion::CrankMotion;
+use crate::mechanism::four_bar::motion::{CrankMotion, LinkageMotion, Motion, PointMotion};
 use crate::mechanism::structure::{Body, Frame, Line, Structure};
 use crate::mechanism::{Chain, Complex, Linkage, MAX_MAGNITUDE, cross, turned};
 
@@ -115,6 +115,30 @@ impl Kinematics {
     ) -> Result<(), Status> {
         let mut coupler = None;
         match source {
+            // As below, without allocation.
+            Source::Loop(Linkage::FourBar(linkage)) => {
+                let motion = linkage.motion(crank_angle, UNIT_SPEED);
+                let Motion::Definite(LinkageMotion {
+                    posture, crank_pin, follower_pin, coupler_point, ..
+                }) = motion
+                else {
+                    return Err(motion.status());
+                };
+                let places = posture.joints;
+                let moving = |at: Complex, point: &PointMotion| Moving {
+                    at: at * scale,
+                    first: point.velocity * scale,
+                    second: point.acceleration * scale,
+                };
+                let joints = [
+                    Moving::still(linkage.crank_pivot() * scale),
+                    Moving::still(linkage.follower_pivot() * scale),
+                    moving(places.crank_pin, &crank_pin),
+                    moving(places.follower_pin, &follower_pin),
+                    moving(places.coupler_point, &coupler_point),
+                ];
+                self.joints.copy_from_slice(&joints);
+            }
             Source::Loop(linkage) => {
                 let motion = linkage.mechanism().motion_at(crank_angle, UNIT_SPEED);
                 if motion.pose.status != Status::Ok {

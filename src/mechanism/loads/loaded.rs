@@ -6,7 +6,7 @@ use super::error::{LoadError, LoadFault, LoadKey};
 use super::instant::{Instant, JointForce};
 use super::kinematics::{Kinematics, Source};
 use super::newton::{Reaction, balance};
-use super::resolve::{Names, Resolved, SpringOn};
+use super::resolve::{BodyInertia, Names, Resolved, SpringOn};
 use crate::mechanism::any::{CrankRange, Mechanism, Status};
 use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::mechanism::structure::{GROUND, OutputBody, Pair, PairKind, Structure};
@@ -94,12 +94,20 @@ impl LoadedLinkage {
     /// [`LoadError`] with the load, the key and the fault: a name that the linkage does not have, a mass on the ground, a number
     /// that is not finite or may not be negative, a spring between two places of one body, a table out of order.
     pub fn new(linkage: &Linkage, unit: Unit, loads: &Loads) -> Result<Self, LoadError> {
+        LoadedLinkage::scaled(linkage, unit.factor_to(Unit::M), loads)
+    }
+
+    /// Resolves the names of loads against a linkage whose unit of length is so many metres.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn scaled(linkage: &Linkage, metres: f64, loads: &Loads) -> Result<Self, LoadError> {
         let no_chain = || LoadError { key: LoadKey::Top("linkage"), fault: LoadFault::NoChain };
         let source = Source::of(linkage).ok_or_else(no_chain)?;
         let mechanism = linkage.mechanism();
         let structure = mechanism.structure();
         let joints: Vec<String> = mechanism.joint_names().into_iter().map(str::to_owned).collect();
-        let scale = unit.factor_to(Unit::M);
+        let scale = metres;
         let loads = Names { structure: &structure, joints: &joints, scale }.resolve(loads)?;
         let (pairs, traced) = (structure.pairs().collect(), mechanism.traced());
         Ok(LoadedLinkage { source, structure, pairs, joints, traced, scale, loads })
@@ -124,6 +132,11 @@ impl LoadedLinkage {
     /// Returns the springs.
     pub(super) fn springs(&self) -> &[SpringOn] {
         &self.loads.springs
+    }
+
+    /// Returns the masses, in the order of [`Loads::bodies`].
+    pub(super) fn masses(&self) -> &[BodyInertia] {
+        &self.loads.masses
     }
 
     /// Returns the bodies and pairs of the linkage.

@@ -123,7 +123,7 @@ impl Names<'_> {
             if found.masses.iter().any(|other| other.body == body) {
                 return error(key(""), LoadFault::SecondMass(load.body.clone()));
             }
-            found.masses.push(self.inertia(&load.body, body, load.mass)?);
+            found.masses.push(self.inertia(&load.body, body, &load.mass)?);
         }
         for (i, force) in loads.forces.iter().enumerate() {
             found.forces.push(self.force(i, force)?);
@@ -178,9 +178,22 @@ impl Names<'_> {
         found.map_or_else(|| error(key, fault()), Ok)
     }
 
-    fn inertia(&self, name: &str, body: usize, mass: Mass) -> Checked<BodyInertia> {
+    fn inertia(&self, name: &str, body: usize, mass: &Mass) -> Checked<BodyInertia> {
         let key = |key| LoadKey::Body(name.to_owned(), key);
-        match mass {
+        match *mass {
+            Mass::AtJoint { mass_kg, ref joint, inertia_kg_m2 } => {
+                not_negative(key("mass_kg"), mass_kg)?;
+                not_negative(key("inertia_kg_m2"), inertia_kg_m2)?;
+                let place = self.joint(key("at"), joint)?;
+                let own = self.structure.bodies[body].joints.iter().find(|(joint, _)| *joint == place);
+                let Some((_, center)) = own else {
+                    let names = self.body_names();
+                    let carriers = self.structure.carriers(place).map(|body| names[body].clone()).collect();
+                    let (joint, body) = (joint.clone(), name.to_owned());
+                    return error(key("at"), LoadFault::NotOnBody { joint, body, carriers });
+                };
+                Ok(BodyInertia { body, mass: mass_kg, center: center * self.scale, inertia: inertia_kg_m2 })
+            }
             Mass::Given { mass_kg, center, inertia_kg_m2 } => {
                 not_negative(key("mass_kg"), mass_kg)?;
                 finite(key("center"), &center)?;

@@ -54,7 +54,7 @@ fn residual(linkage: &Linkage, angle: f64) -> f64 {
     let names = structure.bodies.iter().skip(1);
     let loads = Loads {
         gravity: [gravity.re, gravity.im],
-        bodies: names.map(|body| BodyMass { body: body.name.clone(), mass: given }).collect(),
+        bodies: names.map(|body| BodyMass { body: body.name.clone(), mass: given.clone() }).collect(),
         ..Loads::default()
     };
     let loaded = LoadedLinkage::new(linkage, Unit::Cm, &loads).expect("names");

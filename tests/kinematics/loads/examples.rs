@@ -335,7 +335,7 @@ fn a_toggle_has_a_status_and_no_number() {
 #[test]
 fn a_plate_has_the_mass_of_its_outline() {
     let plate = Mass::Plate { density_kg_m3: 7850.0, thickness: 0.003, width: 0.02 };
-    let bodies = vec![BodyMass { body: "crank".into(), mass: plate }];
+    let bodies = vec![BodyMass { body: "crank".into(), mass: plate.clone() }];
     let loads = Loads { gravity: [0.0, -9.81], bodies, ..Loads::default() };
     let loaded = LoadedLinkage::new(&slider_crank(50.0, 200.0), Unit::Mm, &loads).expect("names");
     // A stadium 50 mm long and 20 mm wide: its centre is in its middle.

@@ -1,6 +1,7 @@
 //! Loads: torques by power balance and by Newton-Euler, energy, closed forms, a textbook's example, and a free-body computation
 //! of its own.
 
+mod balance;
 mod draws;
 mod equilibrium;
 mod examples;
