@@ -27,7 +27,13 @@ fn problem(n: usize, timed: bool) -> Problem {
     let task = TaskSpec { timing, ..TaskSpec::path(points, true) };
     let mut design = DesignSpec::default();
     design.resolve(&task.to_task().expect("the target is a path"));
-    let spec = ProblemSpec { task, design, require: RequireSpec::default(), solve: SolveSpec::default() };
+    let spec = ProblemSpec {
+        task,
+        design,
+        require: RequireSpec::default(),
+        solve: SolveSpec::default(),
+        loads: None,
+    };
     Problem::new(spec).expect("the target is a path")
 }
 

@@ -203,6 +203,7 @@ fn problem(class: &Class, traced: &Traced, points: &[Complex], seed: u64, with: 
     let length = Some(Limits(0.0, longest));
     let offset = Some(Limits(-coupler, coupler));
     ProblemSpec {
+        loads: None,
         task: TaskSpec::path(points.iter().map(|p| [p.re, p.im]).collect(), class.closed),
         design: DesignSpec {
             crank_pivot: pivot,

@@ -7,6 +7,7 @@ use crate::files::diagnostic::Diagnostic;
 use crate::files::linkage_file;
 use crate::files::linkage_file::{AnyLinkageFile, LinkageFile};
 use crate::mechanism::CrankLinkage;
+use crate::mechanism::loads::Loads;
 use crate::record::{Candidate, Pick, Record};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -145,18 +146,27 @@ pub fn read(argument: &Path) -> Result<Given, NotRead> {
 /// # Errors
 /// [`NotRead`].
 pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, NotRead> {
+    Ok(read_loaded_linkage(argument)?.0)
+}
+
+/// Reads one linkage as [`read_linkage`] does, and the loads of its file; a result has none.
+///
+/// # Errors
+/// [`NotRead`].
+pub fn read_loaded_linkage(argument: &Path) -> Result<(AnyLinkageFile, Option<Loads>), NotRead> {
     if is_linkage_file(argument) {
-        return Ok(linkage_file::load_any(argument)?);
+        return Ok(linkage_file::load_loaded(argument)?);
     }
     let run = read_run(argument)?;
     let chosen = run.one()?;
     let problem = &run.record.problem;
-    Ok(AnyLinkageFile {
+    let file = AnyLinkageFile {
         // The name that its linkage file has.
         name: files::linkage_name(&run.record, &chosen.suffix),
         unit: problem.unit,
         linkage: chosen.candidate.linkage.into(),
-    })
+    };
+    Ok((file, None))
 }
 
 /// Returns the file that an input is read from: the record in a folder, whatever candidate is named.

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | SVG, HTML, DXF, STL, OpenSCAD, PNG, GIF, cut list, Markdown | the words of [`mark`], at the writer's place for them |
 //! | linkage file | the mark in its first line, and its table (`[linkage]`, `[slider_crank]`, `[inverted_slider_crank]`, `[chain]`), still in it |
+//! | file of loads | the mark in its first line, and its table `[loads]` |
 //! | CSV | its header row, equal to that of the file which replaces it |
 //! | JSON | `tool.name`, and the key that the kind is about |
 //! | problem file | never: it is a user's from the moment it is there |
@@ -41,6 +42,8 @@ pub enum FileKind {
     Html,
     /// A linkage file (TOML).
     Linkage,
+    /// A file of loads (TOML).
+    Loads,
     /// A problem file (TOML). It belongs to the user as soon as it exists, so that no file is recognised as this kind.
     Problem,
     /// A table (CSV).
@@ -69,6 +72,7 @@ impl FileKind {
             FileKind::Scad => "an OpenSCAD script",
             FileKind::Html => "an HTML page",
             FileKind::Linkage => "a linkage file (TOML)",
+            FileKind::Loads => "a file of loads (TOML)",
             FileKind::Problem => "a problem file (TOML)",
             FileKind::Csv => "a CSV table with these columns",
             FileKind::LinkageJson => "a linkage as JSON",
@@ -111,6 +115,11 @@ impl FileKind {
             }
             FileKind::CutList => line(0).starts_with("Cut list") && line(1).starts_with(MARK),
             FileKind::Linkage => line(0).starts_with('#') && line(0).contains(MARK) && is_linkage(existing),
+            FileKind::Loads => {
+                line(0).starts_with("# Loads of a linkage")
+                    && line(0).contains(MARK)
+                    && head.contains("[loads]")
+            }
             FileKind::Problem => false,
             FileKind::Csv => first_line(existing) == first_line(new) && !first_line(new).is_empty(),
             FileKind::LinkageJson => is_json(existing, "linkage", "candidates"),

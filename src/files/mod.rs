@@ -7,6 +7,7 @@
 //! | [`generator`] | the generator mark of written files: every file that a person names bears it, and a file without it is never replaced |
 //! | [`input_text`] | reading of an input file as text: bounded in size, with a remedy for each way in which it can fail |
 //! | [`linkage_file`] | linkage files: a four-bar in natural coordinates or as a vector loop, a linkage with a slider, or a chain of stages |
+//! | [`loads_file`] | loads: the table `[loads]` of a linkage file, and files of loads alone, read by the same code |
 //! | [`name`] | names of problems and linkages, which become names of folders |
 //! | [`points_file`] | points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`; `#` comments |
 //! | [`problem_file`] | problem files: TOML is read, and a `ProblemSpec` with every default filled in is returned |
@@ -20,6 +21,7 @@ pub mod diagnostic;
 pub mod generator;
 pub(crate) mod input_text;
 pub mod linkage_file;
+pub mod loads_file;
 pub mod name;
 pub mod points_file;
 pub mod problem_file;

@@ -7,6 +7,7 @@ use crate::judge::error::{StructuralError, distances_to_curve, rms};
 use crate::judge::loosen::design_limits;
 use crate::judge::referee::judge;
 use crate::judge::requirement::{Judged, at_least, at_most};
+use crate::judge::torque::peak_torque;
 use crate::judge::two_sided::two_sided;
 use crate::mechanism::{AssemblyMode, Complex, CrankLinkage, FourBar, InputRange, SliderCrank, point};
 use crate::record::{
@@ -145,6 +146,7 @@ pub fn assess_on_curve(
             over,
         },
         link_ratio: linkage.link_ratio(),
+        peak_torque: peak_torque(problem, linkage, &crank_angles, assemblies),
         warnings: Vec::new(),
         alternatives: Vec::new(),
         requirements: Vec::new(),

@@ -231,7 +231,7 @@ impl At<'_> {
                 let scale = match unit {
                     LimitUnit::Length => size,
                     LimitUnit::Degree => 90.0,
-                    LimitUnit::Ratio => limit,
+                    LimitUnit::Ratio | LimitUnit::Torque => limit,
                 };
                 Some(Label { name: name.into(), side: side.map(Side::name), limit, unit, by_room, scale })
             }

@@ -24,5 +24,6 @@ pub fn figures(problem: &Problem, candidate: &Candidate) -> Option<Figures> {
         longest: candidate.linkage.longest(),
         link_ratio: candidate.link_ratio,
         sensitivity: felt.band,
+        peak_torque: candidate.peak_torque,
     })
 }

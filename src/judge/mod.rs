@@ -19,6 +19,7 @@
 //! | [`referee`] | the referee: judges order, circuit and branch of a motion through target points |
 //! | [`requirement`] | the judge's own arithmetic for each requirement: value, limit and whether it is met |
 //! | [`symmetry`] | symmetries of a target, and the images of a linkage under them |
+//! | `torque` | the peak torque of a candidate under the loads of its problem |
 //! | [`trade_off`] | trade-offs between figures: dominance, the choice of the members of a front by hypervolume, and its knees |
 //! | [`two_sided`] | two-sided distance of a path and a coupler curve: of each from the other, whatever the timing |
 //! | [`unwrapped`] | crank angles unwrapped along the motion through the points |
@@ -43,6 +44,7 @@ pub mod rank;
 pub mod referee;
 mod requirement;
 pub mod symmetry;
+mod torque;
 pub mod trade_off;
 pub mod two_sided;
 pub mod unwrapped;

@@ -46,11 +46,12 @@ struct Symmetry {
 pub struct Symmetries(Vec<Symmetry>);
 
 impl Symmetries {
-    /// Finds the symmetries of a problem's target: of its points, weights and tolerances. None are looked for in a motion.
+    /// Finds the symmetries of a problem's target: of its points, weights and tolerances. None are looked for in a motion, nor under
+    /// loads, which have a direction of their own.
     pub fn of(problem: &Problem) -> Self {
         let task = problem.task();
         let all = task.points();
-        if all.len() > MOST_POINTS || task.body().is_some() {
+        if all.len() > MOST_POINTS || task.body().is_some() || problem.spec().loads.is_some() {
             return Symmetries::default();
         }
         // The closing point is the first one again.

@@ -266,6 +266,7 @@ mod tests {
             longest: extent,
             link_ratio: 2.0,
             sensitivity: 1.0,
+            peak_torque: None,
         }
     }
 

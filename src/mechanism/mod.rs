@@ -11,10 +11,12 @@
 //! | [`four_bar`] | planar four-bar linkages: parameters, position, motion, mobility, coupler curve and cognates |
 //! | [`inverted_slider_crank`] | planar inverted slider-cranks, whose coupler slides through a block at a fixed pivot |
 //! | [`crank_linkage`] | linkages that a crank drives, of the kinds that synthesis finds, behind one type |
+//! | [`loads`] | masses, forces, couples and springs of a linkage: the crank's torque, the forces at the joints, energies |
 //! | [`multi_loop`] | six-bars and eight-bars: a crank, and two or three dyads, with the lengths of their links |
 //! | [`plates`] | the links as flat plates with holes at the joints, which can be cut out |
 //! | [`slider`] | linkages of one loop with a slider: what the slider-crank and the inverted slider-crank have in common |
 //! | [`slider_crank`] | planar slider-cranks, whose coupler ends on a block that slides along a fixed line |
+//! | [`structure`] | the bodies of a mechanism and the pairs that connect them |
 //! | [`mod@unit`] | the units that label lengths |
 
 pub mod analysis;
@@ -26,10 +28,12 @@ pub mod dyad_chain;
 pub(crate) mod effort;
 pub mod four_bar;
 pub mod inverted_slider_crank;
+pub mod loads;
 pub mod multi_loop;
 pub mod plates;
 pub mod slider;
 pub mod slider_crank;
+pub mod structure;
 mod unit;
 
 pub use crate::numbers::arithmetic::{

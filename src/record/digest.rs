@@ -47,6 +47,8 @@ pub fn digest(spec: &ProblemSpec) -> Result<String, NotWritten> {
         differential_evolution:
             &'a crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters,
         seed: u64,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        loads: Option<&'a crate::task::spec::LoadsSpec>,
     }
     let solve = &spec.solve;
     let text = serde_json::to_vec(&Decides {
@@ -59,6 +61,7 @@ pub fn digest(spec: &ProblemSpec) -> Result<String, NotWritten> {
         genetic: &solve.genetic,
         differential_evolution: &solve.differential_evolution,
         seed: solve.seed,
+        loads: spec.loads.as_ref(),
     })
     .map_err(NotWritten::from)?;
     Ok(hex(&Sha256::digest(&text)))

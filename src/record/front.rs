@@ -36,11 +36,13 @@ pub enum Axis {
     LinkRatio,
     /// The rms shift of the path for independent errors of every dimension, per unit of their standard deviation, small.
     Sensitivity,
+    /// The torque of largest size on the crank under the loads, small.
+    PeakTorque,
 }
 
 impl Axis {
     /// Every axis, in the order of the columns of `front.csv`.
-    pub const ALL: [Axis; 7] = [
+    pub const ALL: [Axis; 8] = [
         Axis::Rms,
         Axis::Max,
         Axis::Transmission,
@@ -48,6 +50,7 @@ impl Axis {
         Axis::Longest,
         Axis::LinkRatio,
         Axis::Sensitivity,
+        Axis::PeakTorque,
     ];
 
     /// Returns the name on the command line and in the record.
@@ -60,6 +63,7 @@ impl Axis {
             Axis::Longest => "longest",
             Axis::LinkRatio => "link_ratio",
             Axis::Sensitivity => "sensitivity",
+            Axis::PeakTorque => "peak_torque",
         }
     }
 
@@ -86,10 +90,13 @@ pub struct Figures {
     pub link_ratio: f64,
     /// The rms shift of the path for independent errors of every dimension, per unit of their standard deviation.
     pub sensitivity: f64,
+    /// The torque of largest size on the crank under the loads, N m; absent without loads, and of a motion that passes a toggle.
+    #[serde(rename = "peak_torque_N_m", default, skip_serializing_if = "Option::is_none")]
+    pub peak_torque: Option<f64>,
 }
 
 impl Figures {
-    /// Returns the figure of an axis.
+    /// Returns the figure of an axis; infinity for a torque that is absent.
     pub fn of(&self, axis: Axis) -> f64 {
         match axis {
             Axis::Rms => self.rms,
@@ -99,6 +106,7 @@ impl Figures {
             Axis::Longest => self.longest,
             Axis::LinkRatio => self.link_ratio,
             Axis::Sensitivity => self.sensitivity,
+            Axis::PeakTorque => self.peak_torque.unwrap_or(f64::INFINITY),
         }
     }
 }

@@ -322,6 +322,10 @@ pub struct Candidate {
     pub transmission_deg: TransmissionRecord,
     /// Longest over shortest link.
     pub link_ratio: f64,
+    /// The torque of largest size on the crank under the loads of the problem, N m: over a full turn of a crank that turns fully,
+    /// else between the crank angles used; absent without loads, and of a motion that passes a toggle.
+    #[serde(rename = "peak_torque_N_m", default, skip_serializing_if = "Option::is_none")]
+    pub peak_torque: Option<f64>,
     /// Every defect found, whether it is allowed or not.
     pub defects: Vec<Defect>,
     /// Why it may be a poor one to build although its error is good.

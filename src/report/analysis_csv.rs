@@ -1,6 +1,8 @@
-//! An analysis as CSV: one row for each configuration and crank angle; a cell without a number is empty.
+//! An analysis as CSV: one row for each configuration and crank angle; a cell without a number is empty. With loads there are more
+//! columns, and a comment above the header.
 
 use super::csv::{Column, names, written};
+use super::loads;
 use super::text::exact;
 use crate::mechanism::FourBar;
 use crate::mechanism::analysis::{Analysis, Pose, Rates, Row};
@@ -45,18 +47,23 @@ pub(super) const RATES: [[Column<Rates, f64>; 8]; 2] = [
 /// Returns every row of every configuration as CSV.
 pub fn analysis_csv(analysis: &Analysis) -> String {
     let head = ["crank_deg", "t1", "t2"].into_iter().chain(names(&POSE));
-    let head = head.chain(RATES.iter().flat_map(|rates| names(rates))).chain(["status"]);
-    let rows = analysis.configurations.iter().flat_map(|c| c.rows.iter().map(|r| cells(&c.linkage, r)));
-    written(head, rows)
+    let head = head.chain(RATES.iter().flat_map(|rates| names(rates))).map(str::to_owned);
+    let of_loads = analysis.loads.iter().flat_map(loads::columns);
+    let head = head.chain(of_loads).chain(["status".to_owned()]);
+    let comment = analysis.loads.as_ref().map_or_else(String::new, loads::comment);
+    let rows =
+        analysis.configurations.iter().flat_map(|c| c.rows.iter().map(|r| cells(analysis, &c.linkage, r)));
+    comment + &written(head, rows)
 }
 
-fn cells(linkage: &FourBar, row: &Row) -> Vec<String> {
+fn cells(analysis: &Analysis, linkage: &FourBar, row: &Row) -> Vec<String> {
     let signs = [linkage.assembly().sign(), linkage.side().sign()];
     let mut cells = vec![exact(row.crank_deg)];
     cells.extend(signs.map(|sign| sign.to_string()));
     let pose = POSE.iter().map(|(_, of)| row.pose.as_ref().map(of));
     let rates = RATES.iter().flatten().map(|(_, of)| row.rates.as_ref().map(of));
     cells.extend(pose.chain(rates).map(|number| number.map_or(String::new(), exact)));
+    cells.extend(analysis.loads.iter().flat_map(|record| loads::cells(record, row.loads.as_deref())));
     cells.push(row.status.word().to_owned());
     cells
 }

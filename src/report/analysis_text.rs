@@ -4,6 +4,7 @@ use super::analysis_csv::{POSE, RATES};
 use super::csv::{Column, names};
 use super::grid::Align::{Left, Right};
 use super::grid::{Cell, Colour, Grid, Ink, plain};
+use super::loads;
 use super::text::{COLUMNS, NO_NUMBER, capitalised, clean, indented, plural, significant, wrapped};
 use super::words::length_suffix;
 use crate::mechanism::Unit;
@@ -23,6 +24,9 @@ pub fn analysis_head(analysis: &Analysis, colour: Colour) -> String {
         out.push_str(&linkage_line(&first.linkage, analysis.unit));
         out.push_str(&mobility_words(&analysis.mobility, analysis.unit));
     }
+    if let Some(record) = &analysis.loads {
+        out.push_str(&format!("\n{}", loads::words(record, analysis.omega2_rad_s)));
+    }
     out
 }
 
@@ -41,6 +45,11 @@ pub fn analysis_table(analysis: &Analysis, colour: Colour) -> String {
                 out.push('\n');
                 out.push_str(&rates(configuration, colour, columns));
             }
+        }
+        if let Some(record) = &analysis.loads {
+            let rows: Vec<_> =
+                configuration.rows.iter().map(|row| (row.crank_deg, row.loads.as_deref())).collect();
+            out.push_str(&loads::table(record, &rows, colour));
         }
         out.push_str(&methods(configuration, colour));
         out.push_str(&conditions(configuration));

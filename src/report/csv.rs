@@ -64,6 +64,10 @@ pub(super) const OF_FREE_RANGES: [Column<Candidate>; 5] = [
     OF_FUNCTION[2],
 ];
 
+/// The figures that a candidate has beside those in a problem with loads.
+const OF_LOADS: [Column<Candidate>; 1] =
+    [("peak_torque_N_m", |c| c.peak_torque.map_or(String::new(), exact))];
+
 /// The parameters of a linkage: coordinates, lengths and signs.
 pub(super) const PARAMETERS: [Parameter; 11] = [
     ("Ax", |l| Some(l.crank_pivot().re)),
@@ -159,11 +163,18 @@ pub fn candidates_csv(record: &Record) -> String {
         TaskKind::Path => &[],
     };
     let of_linkage = parameters_of(record.candidates.iter().map(|c| &c.linkage));
-    let head = names(&FIGURES).chain(names(of_motion)).chain(names(&of_linkage)).chain(["defects", "unmet"]);
+    let of_loads: &[Column<Candidate>] =
+        if record.problem.resolved.loads.is_some() { &OF_LOADS } else { &[] };
+    let head = names(&FIGURES)
+        .chain(names(of_motion))
+        .chain(names(of_loads))
+        .chain(names(&of_linkage))
+        .chain(["defects", "unmet"]);
     let rows = record.candidates.iter().map(|c| {
         let defects: Vec<String> = c.defects.iter().map(defect).collect();
         let mut row = cells(&FIGURES, c);
         row.extend(cells(of_motion, c));
+        row.extend(cells(of_loads, c));
         row.extend(parameters(&of_linkage, &c.linkage));
         row.extend([defects.join(";"), cell(&words::unmet(record, c).join(";"))]);
         row
@@ -183,14 +194,21 @@ const FRONT: [Column<Member>; 8] = [
     ("kind", |m| m.candidate.linkage.kind().name().to_owned()),
 ];
 
+/// The figures that a member has beside those in a problem with loads.
+const FRONT_OF_LOADS: [Column<Member>; 1] =
+    [("peak_torque_N_m", |m| m.figures.peak_torque.map_or(String::new(), exact))];
+
 /// Returns one row for each member of a record's front: its figures, its kind and its parameters; only the header row
 /// without a front.
 pub fn front_csv(record: &Record) -> String {
     let members = || record.front.iter().flat_map(|front| &front.members);
     let of_linkage = parameters_of(members().map(|member| &member.candidate.linkage));
-    let head = names(&FRONT).chain(names(&of_linkage));
+    let of_loads: &[Column<Member>] =
+        if record.problem.resolved.loads.is_some() { &FRONT_OF_LOADS } else { &[] };
+    let head = names(&FRONT).chain(names(of_loads)).chain(names(&of_linkage));
     let rows = members().map(|member| {
         let mut row = cells(&FRONT, member);
+        row.extend(cells(of_loads, member));
         row.extend(parameters(&of_linkage, &member.candidate.linkage));
         row
     });

@@ -26,7 +26,8 @@ pub fn front_text(record: &Record, colour: Colour) -> String {
         Some(Unit::In) => " Lengths in inches.".to_owned(),
         Some(unit) => format!(" Lengths in {}.", unit.label()),
     };
-    out.push_str(&indented(&format!("{COLUMNS_MEAN}{lengths}")));
+    let torque = if has_torque(front) { TORQUE_MEANS } else { "" };
+    out.push_str(&indented(&format!("{COLUMNS_MEAN}{torque}{lengths}")));
     if let Some(closest) = closest(record) {
         out.push('\n');
         out.push_str(&indented(&closest));
@@ -41,6 +42,9 @@ const COLUMNS_MEAN: &str = "rms, max: the error. transmission: the worst angle, 
     diagonal of the box of all joints and P over the motion used. longest: the longest of ground, a, b, c, d and e. ratio: \
     longest to shortest link. sensitivity: how far the path moves (rms; of a function: how much the output changes, in \
     degrees) for independent errors of all dimensions, per unit of their standard deviation. knee: a little more of one wish costs much of another on either side.";
+
+/// The meaning of the column of torques.
+pub(super) const TORQUE_MEANS: &str = " peak torque: the largest on the crank under the loads, in N m.";
 
 /// The limits that hold for all members.
 pub(super) const LIMITS: &str = "Every one meets all requirements of the problem.";
@@ -78,7 +82,13 @@ pub(super) fn in_words(axis: Axis) -> &'static str {
         Axis::Longest => "longest link",
         Axis::LinkRatio => "link ratio",
         Axis::Sensitivity => "sensitivity",
+        Axis::PeakTorque => "peak torque",
     }
+}
+
+/// Returns whether a member has a peak torque: of a problem with loads.
+pub(super) fn has_torque(front: &Front) -> bool {
+    front.members.iter().any(|member| member.figures.peak_torque.is_some())
 }
 
 fn rows(front: &Front, colour: Colour) -> String {
@@ -91,7 +101,9 @@ fn rows(front: &Front, colour: Colour) -> String {
     let (rms, max) = (number(|m| m.figures.rms, 4), number(|m| m.figures.max, 4));
     let (extent, longest) = (number(|m| m.figures.extent, 4), number(|m| m.figures.longest, 4));
     let (ratio, sensitivity) = (number(|m| m.figures.link_ratio, 3), number(|m| m.figures.sensitivity, 3));
-    let columns: [Column<'_, Row<'_>>; 9] = [
+    let torque =
+        |row: &Row<'_>| plain(row.1.figures.peak_torque.map_or(String::new(), |t| significant(t, 4)));
+    let mut columns: Vec<Column<'_, Row<'_>>> = vec![
         (Right, "#", &|row| plain(row.0.to_string())),
         (Right, "rms", &rms),
         (Right, "max", &max),
@@ -102,6 +114,9 @@ fn rows(front: &Front, colour: Colour) -> String {
         (Right, "sensitivity", &sensitivity),
         (Left, "", &knee),
     ];
+    if has_torque(front) {
+        columns.insert(columns.len() - 1, (Right, "peak torque", &torque));
+    }
     Grid::of(&numbered, &columns).render(colour)
 }
 

@@ -2,6 +2,7 @@
 
 use super::canvas::{Canvas, ROUND_ENDS, Spot, filled, outline, palette, stroke};
 use super::guide::{Drawn, Guide};
+use super::loads;
 use super::mechanism_text::{dimensions, in_words};
 use super::parts::{away, letter, plate, point_mark, stand};
 use super::scene::Bounds;
@@ -86,7 +87,9 @@ pub fn mechanism_svg(analysis: &MechanismAnalysis, linkage: &Linkage) -> String 
         let [w, h] = [0, 1].map(|axis| significant(stroke.high[axis] - stroke.low[axis], 5));
         lines.push(format!("{} moves {w} in x and {h} in y over a turn", analysis.trace));
     }
-    page(&analysis.name, input, &lines, vec![sheet])
+    let toggles = analysis.mobility.as_ref().map_or(&[][..], |mobility| &mobility.toggles_deg);
+    let of_loads = analysis.loads.as_ref().and_then(|record| loads::sheet(record, toggles));
+    page(&analysis.name, input, &lines, [sheet].into_iter().chain(of_loads).collect())
 }
 
 /// Returns the position at a crank angle; `None` if the mechanism does not close.

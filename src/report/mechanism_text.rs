@@ -4,6 +4,7 @@ use super::analysis_text::{DIGITS, degrees, input, number, reach, status_cell};
 use super::csv::written;
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain};
+use super::loads;
 use super::text::{COLUMNS, NO_NUMBER, capitalised, clean, exact, indented, plural, significant, wrapped};
 use super::words::length_suffix;
 use crate::mechanism::Linkage;
@@ -37,7 +38,14 @@ pub fn mechanism_head(analysis: &MechanismAnalysis, colour: Colour) -> String {
         };
         words.push_str(&format!(" Over a turn {trace} moves {} in x and {} in y{unit}.", along(0), along(1)));
     }
-    format!("{}\n{}", colour.paint(Ink::Strong, &clean(&analysis.name)), indented(&words))
+    let of_loads = loads_words(analysis);
+    format!("{}\n{}{of_loads}", colour.paint(Ink::Strong, &clean(&analysis.name)), indented(&words))
+}
+
+/// Returns the figures of loads after a line feed; nothing without loads.
+fn loads_words(analysis: &MechanismAnalysis) -> String {
+    let words = |record| format!("\n{}", loads::words(record, analysis.omega2_rad_s));
+    analysis.loads.as_ref().map_or_else(String::new, words)
 }
 
 /// Returns a kind of file as words: `inverted slider-crank`.
@@ -131,8 +139,12 @@ pub fn mechanism_table(analysis: &MechanismAnalysis, colour: Colour) -> String {
         clean(&analysis.trace),
         input(analysis.omega2_rad_s, analysis.alpha2_rad_s2)
     );
+    let of_loads = analysis.loads.as_ref().map_or_else(String::new, |record| {
+        let rows: Vec<_> = analysis.rows.iter().map(|row| (row.crank_deg, row.loads.as_deref())).collect();
+        loads::table(record, &rows, colour)
+    });
     format!(
-        "{}\n{}{}{}",
+        "{}\n{}{}{}{of_loads}",
         mechanism_head(analysis, colour),
         grid.render(colour),
         wrapped("\n  ", "  ", &note, COLUMNS),
@@ -186,7 +198,7 @@ fn status(row: &MechanismRow) -> String {
 }
 
 /// Returns one row for each crank angle: `crank_deg`, then x, y, vx, vy, ax, ay of every moving point, then coupler and
-/// slider of kinds that have one, then `status`.
+/// slider of kinds that have one, then the columns of loads if there are any (below a comment), then `status`.
 pub fn mechanism_csv(analysis: &MechanismAnalysis) -> String {
     let names: Vec<String> =
         analysis.rows.first().map_or(Vec::new(), |row| row.points.iter().map(|p| p.name.clone()).collect());
@@ -200,7 +212,9 @@ pub fn mechanism_csv(analysis: &MechanismAnalysis) -> String {
     if let Some(row) = analysis.rows.first().filter(has_coupler) {
         head.extend(coupler_cells(row).map(|(name, _)| name.to_owned()));
     }
+    head.extend(analysis.loads.iter().flat_map(loads::columns));
     head.push("status".to_owned());
+    let comment = analysis.loads.as_ref().map_or_else(String::new, loads::comment);
     let rows = analysis.rows.iter().map(|row| {
         let mut cells = vec![exact(row.crank_deg)];
         for point in &row.points {
@@ -212,8 +226,9 @@ pub fn mechanism_csv(analysis: &MechanismAnalysis) -> String {
         if has_coupler(&row) {
             cells.extend(coupler_cells(row).map(|(_, value)| value.map_or(String::new(), exact)));
         }
+        cells.extend(analysis.loads.iter().flat_map(|record| loads::cells(record, row.loads.as_deref())));
         cells.push(status(row));
         cells
     });
-    written(head, rows)
+    comment + &written(head, rows)
 }

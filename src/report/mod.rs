@@ -22,6 +22,7 @@
 //! | [`analysis_csv`] | an analysis as CSV: one row for each configuration and crank angle; a cell without a number is empty |
 //! | [`analysis_sheets`] | an analysis as one self-contained SVG page: the drawings of the classic papers, as far as they apply |
 //! | [`analysis_text`] | an analysis as text: the mobility in words, and the tables of positions, motion and methods |
+//! | [`balance`] | the balance of a linkage as text: what to add, and what is left before and after |
 //! | [`batch_csv`] | a batch as a table for spreadsheets and scripts: one row for each file |
 //! | [`beside`] | lines printed below the candidates: the family, warnings, cognates, the buildable candidate, the picks |
 //! | `bodies` | the drawing of a motion's body: a frame at each pose |
@@ -43,6 +44,7 @@
 //! | [`grid`] | a table of text with aligned columns, and the colours of a terminal |
 //! | [`html`] | a run as an HTML page in one file: the linkage moving over its target, with every figure and verdict |
 //! | [`labels`] | placement of labels beside their points, where they hide least |
+//! | [`loads`] | loads of an analysis as text, as columns of a CSV, and as a chart of the torque |
 //! | `loops` | the links of a six-bar or an eight-bar in drawings |
 //! | [`mechanism_sheet`] | a drawing of a linkage of any kind at one position, with other positions drawn faintly and the path of its traced point |
 //! | [`mechanism_text`] | an analysis of a linkage of any kind as text and as CSV |
@@ -66,6 +68,7 @@
 pub mod analysis_csv;
 pub mod analysis_sheets;
 pub mod analysis_text;
+pub mod balance;
 pub mod batch_csv;
 mod beside;
 mod bodies;
@@ -87,6 +90,7 @@ pub mod grid;
 mod guide;
 pub mod html;
 mod labels;
+pub mod loads;
 mod loops;
 pub mod mechanism_sheet;
 pub mod mechanism_text;

@@ -99,6 +99,7 @@ fn rate((unit, of_errors): (Option<Unit>, &str), rms: f64, cost: &Cost) -> Optio
         (LimitUnit::Length, Some(side)) => format!("{length} more at {}", clean(side)),
         (LimitUnit::Degree, Some("max")) => format!("{shown}° more than {}°", significant(cost.limit, 4)),
         (LimitUnit::Degree, _) => format!("{shown}° less than {}°", significant(cost.limit, 4)),
+        (LimitUnit::Torque, _) => format!("{shown} N m more than {}", significant(cost.limit, 4)),
         (LimitUnit::Ratio, _) => format!("{shown} more than {}", significant(cost.limit, 4)),
     };
     Some(format!("{room} gives back {}{}", significant(rate * step, 2), of_errors))

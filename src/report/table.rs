@@ -30,6 +30,7 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
             TaskKind::Path => rows(record, colour),
         });
         out.push_str(&notes(record));
+        out.push_str(&torques(record));
         out.push_str(&beside::lines(record));
         out.push_str(&best(record));
         out.push_str(&price::costs(record));
@@ -42,6 +43,21 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
     out.push('\n');
     out.push_str(&indented(&ending_sentences(record)));
     out
+}
+
+/// The largest number of candidates whose torques are stated.
+const TORQUES_NAMED: usize = 10;
+
+/// Returns a line on the peak torques of the candidates under the loads of the problem; empty without loads.
+fn torques(record: &Record) -> String {
+    if record.problem.resolved.loads.is_none() {
+        return String::new();
+    }
+    let torque = |c: &Candidate| c.peak_torque.map_or(NO_NUMBER.to_owned(), |torque| significant(torque, 4));
+    let shown = record.candidates.iter().take(TORQUES_NAMED);
+    let all: Vec<String> = shown.map(|c| format!("{} ({})", torque(c), c.rank)).collect();
+    let more = if record.candidates.len() > TORQUES_NAMED { ", .." } else { "" };
+    indented(&format!("Peak torque on the crank under the loads, N m (candidate): {}{more}.", all.join(", ")))
 }
 
 /// Returns name, source, points, size and timing.

@@ -26,10 +26,14 @@ pub(super) struct Tighter {
     pub(super) longest: Option<f64>,
     /// The greatest link ratio.
     pub(super) link_ratio: Option<f64>,
+    /// The greatest size of the torque on the crank, N m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) peak_torque: Option<f64>,
 }
 
 /// The axes that a fit can limit.
-pub(super) const LIMITED: [Axis; 4] = [Axis::Transmission, Axis::Extent, Axis::Longest, Axis::LinkRatio];
+pub(super) const LIMITED: [Axis; 5] =
+    [Axis::Transmission, Axis::Extent, Axis::Longest, Axis::LinkRatio, Axis::PeakTorque];
 
 impl Tighter {
     /// Returns the place of an axis' limit; `None` for an axis that a fit cannot limit.
@@ -39,6 +43,7 @@ impl Tighter {
             Axis::Extent => Some(&mut self.extent),
             Axis::Longest => Some(&mut self.longest),
             Axis::LinkRatio => Some(&mut self.link_ratio),
+            Axis::PeakTorque => Some(&mut self.peak_torque),
             Axis::Rms | Axis::Max | Axis::Sensitivity => None,
         }
     }
@@ -59,6 +64,7 @@ impl Tighter {
             && most(figures.extent, self.extent)
             && most(figures.longest, self.longest)
             && most(figures.link_ratio, self.link_ratio)
+            && most(figures.of(Axis::PeakTorque), self.peak_torque)
     }
 
     /// Returns the problem under these limits and its own, the tighter of both.
@@ -76,6 +82,7 @@ impl Tighter {
         }
         require.extent_max = least(require.extent_max, self.extent);
         require.longest_max = least(require.longest_max, self.longest);
+        require.peak_torque_max = least(require.peak_torque_max, self.peak_torque);
         require.link_ratio_max =
             self.link_ratio.map_or(require.link_ratio_max, |l| require.link_ratio_max.min(l));
         Problem::new(spec).ok()

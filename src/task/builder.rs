@@ -31,6 +31,7 @@ impl Problem {
             design: DesignSpec::default(),
             require: RequireSpec::default(),
             solve: SolveSpec::default(),
+            loads: None,
         };
         ProblemBuilder { spec, any_longest: false }
     }

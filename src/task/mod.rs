@@ -8,6 +8,7 @@
 //! | [`forms`] | the task as mathematics: design space, residuals with derivatives, requirements, fitness |
 //! | `kind` | the kinds of tasks, with their words |
 //! | `limits` | intervals in which the parameters of a design lie |
+//! | [`loads`] | loads of a problem, the same for every candidate |
 //! | [`pivot_on`] | lines and points on which the fixed pivots are to lie |
 //! | [`problem`] | a checked `ProblemSpec`, and the discrete choices of a search besides the design vector (`Setting`) |
 //! | [`ranges`] | free ranges of a function: the scales of its inputs and outputs |
@@ -28,6 +29,7 @@ pub mod defect;
 pub mod forms;
 mod kind;
 mod limits;
+pub mod loads;
 pub mod pivot_on;
 pub mod problem;
 pub mod ranges;

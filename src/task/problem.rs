@@ -184,7 +184,8 @@ impl Problem {
 
     /// Returns the requirements over a design space.
     pub fn requirements(&self, space: &DesignSpace) -> Requirements {
-        Requirements::new(&self.spec.require, space.derived(), self.task.size())
+        let rows = Requirements::new(&self.spec.require, space.derived(), self.task.size());
+        rows.under(self.spec.loads.as_ref())
     }
 
     /// Returns the directions in which prescribed increments may be run, +1 first; for free timing the allowed senses; of a

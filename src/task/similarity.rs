@@ -34,6 +34,11 @@ impl Similarity {
     pub const IDENTITY: Similarity =
         Similarity { from: [0.0; 2], mirrors: false, turns: 0, scale: 1.0, to: [0.0; 2] };
 
+    /// Returns the move by a vector.
+    pub fn shift(by: [f64; 2]) -> Similarity {
+        Similarity { to: by, ..Similarity::IDENTITY }
+    }
+
     /// Returns the image of a point.
     pub fn point(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [x, y] = self.turned([(x - self.from[0]) * self.scale, (y - self.from[1]) * self.scale]);
@@ -215,6 +220,7 @@ impl ProblemSpec {
         if by.mirrors {
             require.direction = opposite(require.direction);
         }
+        spec.loads = self.loads.as_ref().map(|loads| loads.placed(by));
         spec
     }
 

@@ -8,10 +8,12 @@ use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParam
 use crate::numbers::optimise::genetic::GeneticParameters;
 use crate::task::Task;
 use crate::task::pivot_on::PivotOn;
+use crate::task::similarity::Similarity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use crate::task::limits::Limits;
+pub use crate::task::loads::LoadsSpec;
 pub use crate::task::requirement::{RequireSpec, TransmissionOver};
 pub use crate::task::task_spec::{
     BodySpec, DEGREES, FormulaSpec, OutputSpec, RawPoints, TaskSpec, TimingSpec,
@@ -28,6 +30,9 @@ pub struct ProblemSpec {
     pub require: RequireSpec,
     /// The options of the search.
     pub solve: SolveSpec,
+    /// The loads on every linkage; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loads: Option<LoadsSpec>,
 }
 
 impl ProblemSpec {
@@ -53,6 +58,7 @@ impl ProblemSpec {
         if let Some(b) = &mut spec.require.footprint_in {
             *b = [b[0] + by[0], b[1] + by[1], b[2] + by[0], b[3] + by[1]];
         }
+        spec.loads = self.loads.as_ref().map(|loads| loads.placed(&Similarity::shift(by)));
         spec
     }
 }

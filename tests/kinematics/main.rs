@@ -8,6 +8,7 @@ mod dyad_chain_duals;
 mod dyad_chains;
 mod gradients;
 mod literature;
+mod loads;
 mod loop_closure;
 mod mobility;
 mod motion;

@@ -29,6 +29,17 @@ fn open_problem(tables: &str) -> Problem {
     Problem::new(parse(&text).spec).expect("it is one")
 }
 
+/// The same points in cm, of a linkage that carries 1 kg in P and pulls on a spring, with a torque below any that it needs.
+fn loaded(closed: bool, tables: &str) -> Problem {
+    let loads = "[require]\npeak_torque_max = 1e-3\n[loads]\ngravity = [0, -9.81]\nspeed_rpm = 90\n\
+        [loads.body.coupler]\nmass_kg = 1\nat = \"P\"\ninertia_kg_m2 = 1e-5\n\
+        [loads.body.follower]\nmass_kg = 0.1\ncenter = [0.5, 0.2]\n\
+        [[loads.spring]]\nfrom = \"C\"\nto = [3, 5]\nrate_N_per_m = 40\nfree_length = 1\n";
+    let text =
+        format!("format = 1\nunit = \"cm\"\n[task.path]\n{POINTS}\nclosed = {closed}\n{tables}{loads}");
+    Problem::new(parse(&text).spec).expect("it is one")
+}
+
 const REQUIRE: &str =
     "[require]\ntransmission_deg_min = 35\npivots_in = [-3, -3, 3, 3]\nlink_ratio_max = 5\n";
 
@@ -91,6 +102,10 @@ fn cases() -> Vec<(&'static str, Problem)> {
             "free timing, extent past toggles",
             open_problem("[require]\nextent_max = 4\ntype = [\"triple-rocker\"]\nbranch = \"any\"\n"),
         ),
+        ("peak torque", loaded(true, &timing("free"))),
+        ("peak torque, ground", loaded(true, &timing("ground"))),
+        ("free timing, peak torque", loaded(true, "")),
+        ("free timing, peak torque over an arc", loaded(false, "")),
         ("free timing, longest", open_problem("[require]\nlongest_max = 3\n")),
         (
             "free timing, types",

@@ -19,6 +19,8 @@ mod free_ranges;
 mod functions;
 mod invariance;
 mod ladder;
+mod load_images;
+mod loads;
 mod motion;
 mod partly_timed;
 mod pivot_lines;

@@ -57,6 +57,7 @@ fn axes_that_make_no_front_are_refused_with_the_remedy() {
         ("rms,extent,rms", "rms is named twice"),
         ("rms,speed", "write two to four of rms, max, transmission"),
         ("transmission,extent", "add rms or max"),
+        ("rms,peak_torque", "peak_torque needs loads"),
     ] {
         let said = front(folder.path(), "r", &["--axes", axes]);
         assert_eq!(said.code, 2, "{axes}: {}", said.stderr);

@@ -18,6 +18,7 @@ mod documents;
 mod exports;
 mod faults;
 mod front;
+mod loads;
 mod long_runs;
 mod numbers_document;
 mod overwriting;

@@ -53,8 +53,8 @@ fn is_taken(key: &str, value: &str) -> bool {
     })
 }
 
-/// Keys in messages that are no keys of a problem file.
-const OTHERS: [&str; 3] = ["view", "name", "svg_id"];
+/// Keys in messages that are no keys of a problem file: of loads, names of bodies and joints.
+const OTHERS: [&str; 5] = ["view", "name", "svg_id", "body", "from"];
 
 #[test]
 fn every_remedy_that_sets_a_word_is_accepted_by_the_reader() {

@@ -2,10 +2,11 @@
 
 use super::arguments::{Analyze, Cognates};
 use super::output::{Form, Output};
-use super::{Ended, refuse, refuse_io, refuse_path, result, terminal};
+use super::{Ended, refuse, refuse_at, refuse_io, refuse_path, result, terminal};
 use crate::files::generator::FileKind;
 use crate::files::linkage_file;
 use crate::files::linkage_file::AnyLinkageFile;
+use crate::files::loads_file;
 use crate::files::name;
 use crate::mechanism::analysis::driven::{MechanismRequest, analyze_mechanism};
 use crate::mechanism::analysis::{Request, analyze, full_turn};
@@ -28,17 +29,26 @@ const LONG_TABLE: usize = 72;
 
 /// Runs `analyze`.
 pub fn run(options: &Analyze) -> Result<Ended, Ended> {
-    let AnyLinkageFile { name, unit, linkage } = result::read_linkage(&options.linkage)?;
+    let (file, own_loads) = result::read_loaded_linkage(&options.linkage)?;
+    let loads = match &options.loads {
+        Some(path) => Some(loads_file::load(path, &file).map_err(refuse_at)?),
+        None => own_loads,
+    };
+    let AnyLinkageFile { name, unit, linkage } = file;
     let evenly = || full_turn(options.cycle.map_or(DEFAULT_POSITIONS, |n| n as usize));
     let crank_deg = options.angle.clone().unwrap_or_else(evenly);
     let speed = options.omega.or(options.rpm.map(|rpm| CrankMotion::steady_rpm(rpm).speed_rad_s));
+    let speed = speed.or(loads.as_ref().and_then(|loads| loads.speed_rad_s));
     let input = CrankMotion { speed_rad_s: speed.unwrap_or(0.0), acceleration_rad_s2: options.alpha };
     let all_configurations = options.all_configurations;
     match linkage {
         Linkage::FourBar(linkage) => {
             let methods = options.method.clone();
             let request = Request { name, unit, linkage, crank_deg, input, methods, all_configurations };
-            let analysis = analyze(&request);
+            let mut analysis = analyze(&request);
+            if let Some(loads) = &loads {
+                analysis.add_loads(loads).map_err(refuse)?;
+            }
             let forms = Forms {
                 positions: analysis.configurations.iter().map(|c| c.rows.len()).sum(),
                 csv: &|| analysis_csv(&analysis),
@@ -54,7 +64,10 @@ pub fn run(options: &Analyze) -> Result<Ended, Ended> {
         ))),
         linkage => {
             let request = MechanismRequest { name, unit, linkage, crank_deg, input };
-            let analysis = analyze_mechanism(&request);
+            let mut analysis = analyze_mechanism(&request);
+            if let Some(loads) = &loads {
+                analysis.add_loads(&request.linkage, loads).map_err(refuse)?;
+            }
             let forms = Forms {
                 positions: analysis.rows.len(),
                 csv: &|| mechanism_csv(&analysis),
@@ -81,7 +94,8 @@ struct Forms<'a> {
 fn deliver(options: &Analyze, analysis: &impl serde::Serialize, forms: &Forms<'_>) -> Result<Ended, Ended> {
     let asked: [Form<'_>; 2] =
         [(&options.csv, FileKind::Csv, forms.csv), (&options.svg, FileKind::Svg, forms.svg)];
-    let files = Output::new([&options.linkage], options.force).write_asked(&asked)?;
+    let inputs = [&options.linkage].into_iter().chain(&options.loads);
+    let files = Output::new(inputs, options.force).write_asked(&asked)?;
     if options.json {
         let text = serde_json::to_string_pretty(analysis)
             .map_err(|e| refuse(format!("the analysis cannot be written as JSON: {e}")))?;
@@ -100,6 +114,7 @@ fn deliver(options: &Analyze, analysis: &impl serde::Serialize, forms: &Forms<'_
 /// Runs `cognates`.
 pub fn cognates(options: &Cognates) -> Result<Ended, Ended> {
     let AnyLinkageFile { name, unit, linkage } = result::read_linkage(&options.linkage)?;
+    result::note_loads(&options.linkage);
     let linkage = match linkage {
         Linkage::FourBar(linkage) => linkage,
         Linkage::SliderCrank(linkage) => return cognate_of_a_slider_crank(options, &name, unit, &linkage),

@@ -1,5 +1,6 @@
 //! Commands and options, with their help texts and the checks of their values.
 
+use super::balance::arguments::Balance;
 use crate::app::snapping::{NoKey, kept_key, length_key, set_key};
 use crate::files::schema::SchemaKind;
 use crate::mechanism::MAX_MAGNITUDE;
@@ -53,6 +54,8 @@ pub enum Command {
     Report(Report),
     /// Positions, velocities, accelerations and mobility of a linkage
     Analyze(Analyze),
+    /// A spring that lets a loaded linkage stay where it is put, or counter-masses for an even torque
+    Balance(Balance),
     /// The other two linkages of the same coupler curve
     Cognates(Cognates),
     /// What it takes to build a linkage: layers, least distances, sensitivity to each dimension
@@ -148,7 +151,7 @@ pub struct Synth {
 pub struct Front {
     /// A problem file (TOML), points (CSV) or a drawing (SVG)
     pub problem: PathBuf,
-    /// Two to four of rms, max, transmission, extent, longest, link_ratio, sensitivity
+    /// Two to four of rms, max, transmission, extent, longest, link_ratio, sensitivity, peak_torque
     #[arg(long, value_name = "AXIS,..", value_delimiter = ',', default_value = "rms,transmission,extent", value_parser = axis)]
     pub axes: Vec<Axis>,
     /// How many linkages
@@ -317,6 +320,9 @@ pub struct Analyze {
     /// Acceleration of the crank, rad/s^2
     #[arg(long, value_name = "A", default_value = "0", allow_negative_numbers = true, value_parser = finite)]
     pub alpha: f64,
+    /// Loads in a file of their own, in place of those of the linkage file: torque, joint forces, energies
+    #[arg(long, value_name = "FILE")]
+    pub loads: Option<PathBuf>,
     /// Methods side by side: natural, algebraic, complex, fixed-point
     #[arg(long, value_name = "METHOD,..", value_delimiter = ',')]
     pub method: Vec<PositionMethod>,
@@ -537,7 +543,7 @@ pub struct Export {
 
 /// The reason why a value of an option is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-enum ValueError {
+pub(super) enum ValueError {
     #[error("this is not a number")]
     NotANumber,
     #[error("a finite number below {MAX_MAGNITUDE:e} in magnitude is needed")]
@@ -560,7 +566,7 @@ enum ValueError {
     Key(#[from] NoKey),
 }
 
-fn finite(text: &str) -> Result<f64, ValueError> {
+pub(super) fn finite(text: &str) -> Result<f64, ValueError> {
     let number: f64 = text.trim().parse().map_err(|_| ValueError::NotANumber)?;
     if number.abs() <= MAX_MAGNITUDE { Ok(number) } else { Err(ValueError::TooLarge) }
 }

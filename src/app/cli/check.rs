@@ -5,8 +5,10 @@ use super::{Ended, refuse_at, terminal};
 use crate::files::diagnostic::{Diagnostic, counted, escaped};
 use crate::files::input_text;
 use crate::files::linkage_file;
+use crate::files::loads_file;
 use crate::files::{points_file, problem_file, sweep_file};
 use crate::mechanism::Linkage;
+use crate::mechanism::loads::Loads;
 use ariadne::ReportKind;
 use std::path::Path;
 
@@ -45,7 +47,7 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
         return Ok((format!("a drawing: {n} points of {shape} curve, size {size:.6} {unit}"), file.warnings));
     }
     if is_linkage_file(path) {
-        let file = linkage_file::load_any(path)?;
+        let (file, loads) = linkage_file::load_loaded(path)?;
         let name = file.name;
         let summary = match &file.linkage {
             Linkage::FourBar(linkage) => {
@@ -59,6 +61,12 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
                 format!("chain {name}: {} stages, points {}", chain.stages(), chain.names().join(", "))
             }
         };
+        let loads = loads.map_or_else(String::new, |loads| format!("; loads: {}", counted_loads(&loads)));
+        return Ok((summary + &loads, Vec::new()));
+    }
+    if has_table(path, &["[loads", "[[loads"]) && !has_table(path, &["[task"]) {
+        let loads = counted_loads(&loads_file::load_alone(path)?);
+        let summary = format!("loads: {loads}; `analyze LINKAGE --loads FILE` checks them against a linkage");
         return Ok((summary, Vec::new()));
     }
     if sweep_file::is_sweep(path) {
@@ -102,14 +110,34 @@ fn targets(count: usize, angles: Option<&[Option<f64>]>) -> String {
     }
 }
 
+/// Returns the numbers of loads of each sort.
+fn counted_loads(loads: &Loads) -> String {
+    let sorts = [
+        (loads.bodies.len(), "body with mass"),
+        (loads.forces.len(), "force"),
+        (loads.couples.len(), "couple"),
+        (loads.springs.len(), "spring"),
+    ];
+    let named = |(count, sort): &(usize, &str)| match (*count, *sort) {
+        (count, "body with mass") if count > 1 => format!("{count} bodies with mass"),
+        (count, sort) => counted(count, sort),
+    };
+    let some: Vec<String> = sorts.iter().filter(|(count, _)| *count > 0).map(named).collect();
+    if some.is_empty() { "none".to_owned() } else { some.join(", ") }
+}
+
 /// Returns whether a file has one of the tables that only a linkage file has. An unreadable file is left to the problem
 /// reader's diagnostics.
 fn is_linkage_file(path: &Path) -> bool {
+    has_table(path, &["[linkage]", "[vector_loop]", "[slider_crank]", "[inverted_slider_crank]", "[chain"])
+}
+
+/// Returns whether a line of a file begins with one of these.
+fn has_table(path: &Path, tables: &[&str]) -> bool {
     // A pipe can be read only once.
     let text = if path.is_file() { input_text::read(path).unwrap_or_default() } else { String::new() };
     text.lines().any(|line| {
         let line = line.trim_start();
-        let tables = ["[linkage]", "[vector_loop]", "[slider_crank]", "[inverted_slider_crank]", "[chain"];
         tables.iter().any(|table| line.starts_with(table))
     })
 }

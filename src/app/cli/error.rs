@@ -2,6 +2,7 @@
 
 use crate::app::job::folder::FolderError;
 use crate::files::diagnostic::Diagnostic;
+use crate::synthesis::front::AxesError;
 
 /// The reason why a command cannot be carried out.
 #[derive(Debug, thiserror::Error)]
@@ -23,6 +24,9 @@ pub enum CommandError {
     /// Two problems have one folder for their results.
     #[error("{one} and {other} would both write to {place}; give them different names (key `name`)")]
     SamePlace { one: String, other: String, place: String },
+    /// The axes of a front do not go with the problem.
+    #[error(transparent)]
+    Axes(#[from] AxesError),
     /// A problem file is invalid.
     #[error("{}", .0.message)]
     Problem(#[from] Box<Diagnostic>),

@@ -69,6 +69,9 @@ fn job(
     file: &str,
     taken: &mut BTreeMap<PathBuf, String>,
 ) -> Result<(Job, PathBuf), CommandError> {
+    if let Some(front) = &options.front {
+        front.check_loads(&problem.spec)?;
+    }
     for warning in &problem.warnings {
         terminal::diagnose(ReportKind::Warning, warning);
     }

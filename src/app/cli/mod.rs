@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`analyze`] | `analyze` and `cognates`: motion of a given linkage, and the other linkages of its curve |
 //! | [`mod@arguments`] | commands and options, with their help texts and the checks of their values |
+//! | [`balance`] | `balance`: a spring that lets a linkage stay where it is put, or counter-masses |
 //! | [`build`] | `build`: layers, distances and sensitivities of a linkage that is to be built |
 //! | [`certify`] | `certify`: lower bounds of the error, by branch and bound |
 //! | [`check`] | `check`: reads files and reports their faults without running anything |
@@ -33,6 +34,7 @@
 
 mod analyze;
 mod arguments;
+mod balance;
 mod build;
 mod certify;
 mod check;
@@ -152,6 +154,7 @@ fn dispatch(command: Command) -> Result<Ended, Ended> {
         Command::Compare(options) => compare::run(&options),
         Command::Verify(options) => verify::run(&options),
         Command::Analyze(options) => analyze::run(&options),
+        Command::Balance(options) => balance::run(&options),
         Command::Cognates(options) => analyze::cognates(&options),
         Command::Certify(options) => certify::run(&options),
         Command::Report(options) => report::run(&options),

@@ -7,6 +7,7 @@ use crate::app::inputs;
 pub use crate::app::inputs::{Given, NoCandidate, NotRead, Run, Which, file_of};
 use crate::files::linkage_file::AnyLinkageFile;
 use crate::judge::verify::{Mismatch, verify};
+use crate::mechanism::loads::Loads;
 use crate::record::Record;
 use std::path::Path;
 
@@ -56,6 +57,22 @@ pub fn read_run_of(argument: &Path, command: &str) -> Result<Run, Ended> {
 /// [`Ended::Refused`]; the fault has been reported. [`Ended::Bad`] for a result without any candidate.
 pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, Ended> {
     Ok(inputs::read_linkage(argument)?)
+}
+
+/// As [`read_linkage`], with the loads of a linkage file.
+///
+/// # Errors
+/// As [`read_linkage`].
+pub fn read_loaded_linkage(argument: &Path) -> Result<(AnyLinkageFile, Option<Loads>), Ended> {
+    Ok(inputs::read_loaded_linkage(argument)?)
+}
+
+/// Says that loads of a linkage file are not carried over to what the command writes.
+pub fn note_loads(argument: &Path) {
+    if let Ok((_, Some(_))) = inputs::read_loaded_linkage(argument) {
+        let file = terminal::shown(argument);
+        terminal::tell(&format!("note: the loads of {file} are not carried over to the new linkage"));
+    }
 }
 
 /// Recomputes a record, and returns the figures that are not so.

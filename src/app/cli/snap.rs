@@ -31,6 +31,7 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
         NoSubject::NoCandidate(none) => Ended::from(none),
         why => refuse(why),
     })?;
+    result::note_loads(&options.result);
     // Before the work, not after it.
     if let Some(path) = linkage_place(options) {
         output(options).check(&[(path, FileKind::Linkage, "")])?;

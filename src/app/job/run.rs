@@ -9,7 +9,7 @@ use crate::numbers::optimise::population::PopulationError;
 use crate::record::digest::NotWritten;
 use crate::record::{BestOfKind, Candidate, Front, Picks, ProblemRecord, Reason, Record};
 use crate::synthesis::conflicts::Explained;
-use crate::synthesis::front::{self, FrontRequest};
+use crate::synthesis::front::{self, AxesError, FrontRequest};
 use crate::synthesis::keeper::Keeper;
 use crate::synthesis::picks;
 use crate::synthesis::{self, Budget, Observer, SearchOutcome, answers, conflicts, continuation, plan};
@@ -85,6 +85,9 @@ pub enum RunError {
     /// A population search cannot be set up.
     #[error(transparent)]
     Population(#[from] PopulationError),
+    /// The axes of the front do not go with the problem.
+    #[error(transparent)]
+    Axes(#[from] AxesError),
     /// The problem cannot be written as data.
     #[error(transparent)]
     NotWritten(#[from] NotWritten),
@@ -155,6 +158,9 @@ pub fn prove(record: &mut Record, cancel: &AtomicBool, progress: &mut dyn FnMut(
 /// # Errors
 /// As [`run`].
 pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -> Result<Finished, RunError> {
+    if let Some(front) = &job.front {
+        front.check_loads(&job.spec)?;
+    }
     let start = Instant::now();
     let problem = Problem::new(job.spec.clone())?;
     if job.spec.solve.method == Method::Continuation {

@@ -44,6 +44,9 @@ pub enum NotHere {
     /// The ranges of a function are free.
     #[error("the studio has no free ranges of functions: run it with `linkwright synth`")]
     FreeRanges,
+    /// The problem has loads.
+    #[error("the studio has no loads: run it with `linkwright synth`")]
+    Loads,
     /// The problem is another one after it is converted to an edit and back.
     #[error("the studio cannot hold all of this problem ({0}): run it with `linkwright synth`")]
     Other(String),
@@ -307,9 +310,12 @@ impl Ask {
     /// # Errors
     /// [`NotHere`] if the studio cannot hold it.
     pub fn of(problem: &ProblemFile) -> Result<Ask, NotHere> {
-        let ProblemSpec { task: path, require, solve, design } = &problem.spec;
+        let ProblemSpec { task: path, require, solve, design, loads: _ } = &problem.spec;
         if path.output.is_some() && !design.is_of_four_bars() {
             return Err(NotHere::OfSliders);
+        }
+        if problem.spec.loads.is_some() {
+            return Err(NotHere::Loads);
         }
         if path.timing.as_ref().is_some_and(|timing| !timing.free.is_empty()) {
             return Err(NotHere::PartlyTimed);
@@ -379,8 +385,9 @@ impl Ask {
 
 /// Returns a hash that differs for problems whose best answers may differ: by target, bounds, requirements, objective.
 fn told(spec: &ProblemSpec) -> String {
-    let ProblemSpec { task, design, require, solve } = &without_raw(spec);
-    let text = serde_json::to_string(&(task, design, require, solve.objective)).unwrap_or_default();
+    let ProblemSpec { task, design, require, solve, loads } = &without_raw(spec);
+    let mut text = serde_json::to_string(&(task, design, require, solve.objective)).unwrap_or_default();
+    text.extend(loads.as_ref().and_then(|loads| serde_json::to_string(loads).ok()));
     // FNV-1a.
     let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
@@ -435,6 +442,10 @@ mod tests {
                 }
                 if problem.spec.task.output.as_ref().is_some_and(|output| output.ranges.is_free()) {
                     assert!(matches!(Ask::of(&problem), Err(NotHere::FreeRanges)), "{}", path.display());
+                    continue;
+                }
+                if problem.spec.loads.is_some() {
+                    assert!(matches!(Ask::of(&problem), Err(NotHere::Loads)), "{}", path.display());
                     continue;
                 }
                 let has_sliders = !problem.spec.design.is_of_four_bars();

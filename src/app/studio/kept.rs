@@ -34,7 +34,7 @@ fn table<T: Serialize>(value: &T) -> toml::Table {
 
 /// Returns the keys that a problem gives and the studio has no control for.
 pub(super) fn kept(spec: &ProblemSpec) -> BTreeMap<String, String> {
-    let ProblemSpec { task, design, require, solve } = spec;
+    let ProblemSpec { task, design, require, solve, loads: _ } = spec;
     let (mut kept, mut usual) = (BTreeMap::new(), RequireSpec::default());
     if let Ok(task) = task.to_task() {
         let given = bounds(design, &task);

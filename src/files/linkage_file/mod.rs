@@ -9,9 +9,11 @@ pub use sliders::{inverted_slider_crank_to_toml, slider_crank_to_toml};
 
 use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::input_text;
+use crate::files::loads_file::{RawLoads, of_linkage_file};
 use crate::files::name;
 use crate::files::toml_text::TomlText;
 use crate::files::toml_values::{Count, Number, OnlyTable, XY};
+use crate::mechanism::loads::Loads;
 use crate::mechanism::{
     AssemblyMode, CouplerSide, CrankLinkage, FourBar, InvertedSliderCrank, Linkage, LinkageError,
     MAX_MAGNITUDE, MultiLoop, NaturalCoordinates, SliderCrank, Unit, VectorLoop,
@@ -61,6 +63,8 @@ pub(crate) struct RawLinkageFile {
     inverted_slider_crank: Option<OnlyTable<sliders::RawInvertedSliderCrank>>,
     /// A compound mechanism, stage by stage.
     chain: Option<OnlyTable<chain::RawChain>>,
+    /// Masses, forces, couples and springs, with which `analyze` finds torques and joint forces; `unit` is required then.
+    loads: Option<OnlyTable<RawLoads>>,
 }
 
 /// Pivots A and B, lengths and two signs.
@@ -230,11 +234,28 @@ pub fn parse_crank_linkage(
     }
 }
 
-/// Reads the linkage of a text, of any kind.
+/// Reads the linkage of a text, of any kind; its loads are checked.
 ///
 /// # Errors
 /// As [`load_any`].
 pub fn parse_any(file_name: &str, text: &str) -> Result<AnyLinkageFile, Box<Diagnostic>> {
+    parse_loaded(file_name, text).map(|(file, _)| file)
+}
+
+/// Reads the linkage of a file, of any kind, and its loads if it has the table `[loads]`.
+///
+/// # Errors
+/// A [`Diagnostic`] that points at the fault.
+pub fn load_loaded(path: &Path) -> Result<(AnyLinkageFile, Option<Loads>), Box<Diagnostic>> {
+    let text = input_text::read(path)?;
+    parse_loaded(&path.display().to_string(), &text)
+}
+
+/// Reads the linkage of a text, of any kind, and its loads if it has the table `[loads]`.
+///
+/// # Errors
+/// As [`load_loaded`].
+pub fn parse_loaded(file_name: &str, text: &str) -> Result<(AnyLinkageFile, Option<Loads>), Box<Diagnostic>> {
     let toml = TomlText { file: file_name, text: input_text::without_mark(text) };
     if toml.text.trim().is_empty() {
         return toml.refuse_file("the file is empty", KINDS);
@@ -270,7 +291,10 @@ pub fn parse_any(file_name: &str, text: &str) -> Result<AnyLinkageFile, Box<Diag
     } else {
         return toml.refuse_file("there is no linkage in this file", KINDS);
     };
-    Ok(LinkageFile { name, unit: raw.unit, linkage })
+    let unit = raw.unit;
+    let loads =
+        raw.loads.map(|OnlyTable(loads)| of_linkage_file(&toml, loads, unit, &linkage)).transpose()?;
+    Ok((LinkageFile { name, unit, linkage }, loads))
 }
 
 fn natural_linkage(raw: RawLinkage) -> Result<FourBar, LinkageError> {

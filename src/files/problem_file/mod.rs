@@ -9,6 +9,7 @@ mod design;
 mod expect;
 mod function;
 mod lists;
+mod loads;
 mod motion;
 mod overrides;
 mod path;
@@ -199,11 +200,12 @@ fn parse_at(
     }
     design.resolve(&task);
     design::against_lines(&toml, &design, &require)?;
-    let spec = ProblemSpec { task: path, design, require, solve };
+    let unit = raw.unit.or(unit);
+    let loads = loads::of(&toml, raw.loads.map(|OnlyTable(loads)| loads), unit, (&path, &design, &require))?;
+    let spec = ProblemSpec { task: path, design, require, solve, loads };
     continuation_of(&toml, &spec)?;
     warnings.extend(variables_of(&toml, &spec)?);
     warnings.extend(closing::against(&toml, &spec));
-    let unit = raw.unit.or(unit);
     Ok(ProblemFile { name, source: raw.source, unit, spec, expect, warnings })
 }
 

@@ -3,6 +3,7 @@
 
 use super::Expect;
 use super::ranges::RangeNumbers;
+use crate::files::loads_file::RawLoads;
 use crate::files::toml_values::{
     BoundedXY, Bounds, Count, CrankAngle, Number, OneOrEach, OnlyTable, PoseNumbers, XY,
 };
@@ -45,6 +46,9 @@ pub(crate) struct RawProblem {
     /// The options of a certificate, where `solve.certify` asks for one.
     #[serde(default)]
     pub certify: Option<OnlyTable<RawCertify>>,
+    /// The loads on every linkage that is found; they need the unit of lengths.
+    #[serde(default)]
+    pub loads: Option<OnlyTable<RawLoads>>,
     /// The known facts about the answer; no search reads them.
     pub expect: Option<OnlyTable<Expect>>,
 }

@@ -120,6 +120,66 @@ on = ["C", "D"]
 at = [2.0, 1.0]
 ```
 
+Loads, in the table `[loads]` below the linkage or in a file of their own (`format`, `unit` and `[loads]`; `analyze LINKAGE --loads
+FILE`), need `unit`. Masses are in kg, forces in N, moments in N m, rates in N/m and N m/rad, lengths in the file's unit. A body is
+named `crank`, `coupler`, `follower`, `block` or `link5` to `link8`; of a chain it is two joints of the link (`B-C`), and `block-D` is the block
+of the stage that makes D. Places on a body count along the line from its first joint to its second, and to the left of it. Friction
+is left out: joints and sliders bear forces without loss.
+
+```toml
+format = 1
+name = "loaded"
+unit = "mm"
+
+[linkage]
+A = [0.0, 0.0]
+B = [40.0, 10.0]
+a = 20.0
+b = 50.0
+c = 50.0
+d = 50.0
+e = 50.0
+t1 = 1
+t2 = 1
+
+[loads]
+gravity = [0, -9.81]
+
+[loads.body.coupler]
+mass_kg = 0.2
+center = [20, 5]
+inertia_kg_m2 = 1e-4
+
+[loads.body.follower]
+density_kg_m3 = 2700
+thickness = 5
+width = 20
+
+[[loads.force]]
+at = "P"
+force_N = [0, -10]
+
+[[loads.force]]
+at = { body = "follower", at = [25, 0] }
+along = "follower"
+table = [[0, 0, 2], [180, 0, 6]]
+
+[[loads.couple]]
+body = "follower"
+moment_N_m = 0.3
+
+[[loads.spring]]
+from = "D"
+to = [50, 80]
+rate_N_per_m = 400
+free_length = 30
+
+[[loads.spring]]
+body = "follower"
+rate_N_m_per_rad = 0.5
+free_angle_deg = 90
+```
+
 A file that linkwright wrote says so in its first line, "written by linkwright", whatever is edited below it: such a
 file may be replaced by a command that writes a linkage file under the same name. Without that line, and where it is the
 command's own input, it is replaced with `--force` alone.
@@ -220,6 +280,7 @@ impl<'a> Page<'a> {
         for (key, value) in inner {
             let path = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
             let Some((table, list)) = self.inner(value) else { continue };
+            let path = if self.is_by_name(value) { format!("{path}.NAME") } else { path };
             let heading = if list { format!("[[{path}]]") } else { format!("[{path}]") };
             let _ = write!(self.text, "\n## `{heading}`\n\n{}\n", description(value));
             self.table(&path, table);
@@ -233,7 +294,15 @@ impl<'a> Page<'a> {
             Value::Null => (value, false),
             items => (self.resolved(items), true),
         };
+        let value =
+            if self.is_by_name(value) { self.resolved(&value["additionalProperties"]) } else { value };
         value["properties"].is_object().then_some((value, list))
+    }
+
+    /// Returns whether a key holds tables by names that are free.
+    fn is_by_name(&self, value: &'a Value) -> bool {
+        let tables = self.resolved(&self.resolved(value)["additionalProperties"]);
+        tables["properties"].is_object()
     }
 
     /// Returns the allowed words of a key, if its value is one of several words or a list of such.
@@ -275,6 +344,7 @@ impl<'a> Page<'a> {
         match value.get("minItems").and_then(Value::as_u64) {
             Some(n) if value.get("maxItems").and_then(Value::as_u64) == Some(n) => match (n, item.as_str()) {
                 (2, "number") => "[number, number]".into(),
+                (3, "number") => "[number, number, number]".into(),
                 _ => format!("list of {n}: {item} each"),
             },
             _ => format!("list: {item} each"),

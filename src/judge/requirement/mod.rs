@@ -11,6 +11,7 @@ mod input;
 mod link_ratio;
 mod linkage_type;
 mod longest_max;
+mod peak_torque;
 mod pivot_on;
 mod stroke;
 mod tolerance;
@@ -77,6 +78,7 @@ impl Judged<'_> {
             RequirementKind::FootprintIn => boxes::footprint(self),
             RequirementKind::ExtentMax => extent_max::judged(self),
             RequirementKind::LongestMax => longest_max::judged(self),
+            RequirementKind::PeakTorque => peak_torque::judged(self),
             RequirementKind::Stroke => stroke::length(self),
             RequirementKind::TimeRatio => stroke::time_ratio(self),
             RequirementKind::Direction => direction::judged(self),

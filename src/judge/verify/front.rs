@@ -95,6 +95,7 @@ impl Comparison<'_> {
         for axis in Axis::ALL {
             let (r, f) = (recorded.of(axis), found.of(axis));
             match axis {
+                Axis::PeakTorque => own.peak_torque(recorded.peak_torque, found.peak_torque),
                 Axis::Transmission => own.transmission("transmission_deg", r, f),
                 Axis::LinkRatio | Axis::Sensitivity => own.number(axis.name(), r, f, 1.0),
                 Axis::Rms | Axis::Max | Axis::Extent | Axis::Longest => own.number(axis.name(), r, f, size),

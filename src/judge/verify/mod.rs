@@ -203,6 +203,7 @@ impl Comparison<'_> {
             self.problem.task().size(),
         );
         self.number("link_ratio", recorded.link_ratio, found.link_ratio, 1.0);
+        self.peak_torque(recorded.peak_torque, found.peak_torque);
         let (r, f) = (&recorded.transmission_deg, &found.transmission_deg);
         self.transmission("transmission_deg.min", r.min, f.min);
         self.transmission("transmission_deg.max", r.max, f.max);
@@ -221,6 +222,17 @@ impl Comparison<'_> {
         self.timing(&recorded.linkage, &recorded.crank_deg, scale);
         self.requirements(recorded, &found);
         true
+    }
+
+    /// Compares torques of largest size, each if there is one.
+    fn peak_torque(&mut self, recorded: Option<f64>, found: Option<f64>) {
+        match (recorded, found) {
+            (Some(recorded), Some(found)) => self.number("peak_torque_N_m", recorded, found, found.abs()),
+            (recorded, found) => {
+                let word = |torque: Option<f64>| if torque.is_some() { "there" } else { "absent" };
+                self.same("peak_torque_N_m", word(recorded), word(found));
+            }
+        }
     }
 
     /// Compares the offsets and the sense of a function.

@@ -2,8 +2,10 @@
 //! one coupler its angle, the slider's place and the transmission angle.
 
 use super::Status;
+use super::loaded::LoadRecord;
 pub use crate::mechanism::chain::kind::CYCLE_SAMPLES;
 use crate::mechanism::four_bar::motion::CrankMotion;
+use crate::mechanism::loads::Instant;
 use crate::mechanism::{Complex, Linkage, Mechanism, Output, OutputRate, Unit, bounding_box, xy};
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -80,6 +82,9 @@ pub struct MechanismRow {
     /// Coupler and slider; absent for chains.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub coupler: Option<CouplerRow>,
+    /// Torque, joint forces and energies, if loads were added and the motion is definite.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loads: Option<Box<Instant>>,
 }
 
 /// Bounding box of the traced point's path over a turn.
@@ -148,6 +153,9 @@ pub struct MechanismAnalysis {
     /// Bounding box of the traced path; absent if the point is known at no crank angle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stroke: Option<Stroke>,
+    /// Loads over the range of the crank, if they were added.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loads: Option<LoadRecord>,
     /// One row for each crank angle requested.
     pub rows: Vec<MechanismRow>,
 }
@@ -191,6 +199,7 @@ pub fn analyze_mechanism(request: &MechanismRequest) -> MechanismAnalysis {
         input_arcs_deg: range.arcs.iter().map(|arc| arc.map(f64::to_degrees)).collect(),
         mobility: range.circuits.zip(range.margin).map(of_loop),
         stroke,
+        loads: None,
         rows: request.crank_deg.iter().map(|deg| row(mechanism, *deg, request.input)).collect(),
     }
 }
@@ -240,5 +249,6 @@ fn row(mechanism: &dyn Mechanism, crank_deg: f64, input: CrankMotion) -> Mechani
         // The pivots, which come first among the names, stay where they are.
         points: names.iter().enumerate().skip(mechanism.pivots()).map(point).collect(),
         coupler,
+        loads: None,
     }
 }

@@ -5,6 +5,7 @@
 //! gives the reason, never a NaN.
 
 pub mod driven;
+pub mod loaded;
 
 pub use crate::mechanism::any::Status;
 
@@ -13,9 +14,11 @@ use crate::mechanism::four_bar::loop_closure::{
     Iteration, IterationOptions, IterationVerdict, LoopRoot, LoopRoots, Singularity,
 };
 use crate::mechanism::four_bar::motion::{CrankMotion, Motion};
+use crate::mechanism::loads::Instant;
 use crate::mechanism::{
     AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates, point, xy,
 };
+use loaded::LoadRecord;
 use serde::Serialize;
 
 /// A method of position analysis.
@@ -149,6 +152,9 @@ pub struct Row {
     /// The results of the other methods.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub methods: Vec<MethodRow>,
+    /// Torque, joint forces and energies, if loads were added and the motion is definite.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loads: Option<Box<Instant>>,
 }
 
 /// Romero's condition (20) beside the sufficient one.
@@ -245,6 +251,9 @@ pub struct Analysis {
     pub alpha2_rad_s2: f64,
     /// The mobility of the linkage.
     pub mobility: MobilityRecord,
+    /// Loads over the range of the crank, if they were added.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loads: Option<LoadRecord>,
     /// The configurations asked for, the linkage's own first.
     pub configurations: Vec<Configuration>,
 }
@@ -278,6 +287,7 @@ pub fn analyze(request: &Request) -> Analysis {
         omega2_rad_s: request.input.speed_rad_s,
         alpha2_rad_s2: request.input.acceleration_rad_s2,
         mobility: mobility(&request.linkage),
+        loads: None,
         configurations,
     }
 }
@@ -319,7 +329,7 @@ fn row(linkage: &FourBar, crank_deg: f64, request: &Request) -> Row {
     });
     let others = request.methods.iter().filter(|m| **m != PositionMethod::Natural);
     let methods = others.map(|method| method_row(linkage, angle, *method)).collect();
-    Row { crank_deg, status, pose, rates, assembly, methods }
+    Row { crank_deg, status, pose, rates, assembly, methods, loads: None }
 }
 
 fn method_row(linkage: &FourBar, angle: f64, method: PositionMethod) -> MethodRow {

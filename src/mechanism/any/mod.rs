@@ -9,6 +9,7 @@ use super::four_bar::transmission::TransmissionExtremes;
 use super::slider::motion::Sliding;
 use super::{Chain, Complex, FourBar, InvertedSliderCrank, MultiLoop, SliderCrank};
 use crate::mechanism::four_bar::motion::CrankMotion;
+use crate::mechanism::structure::Structure;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -195,6 +196,9 @@ pub trait Mechanism {
 
     /// Returns the moving links, the crank first.
     fn moving_links(&self) -> Vec<Link>;
+
+    /// Returns the bodies, and the pairs that connect them.
+    fn structure(&self) -> Structure;
 
     /// Returns the guide of the slider; `None` for kinds that are drawn without one.
     fn slide(&self) -> Option<Slide> {

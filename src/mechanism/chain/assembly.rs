@@ -115,6 +115,7 @@ impl<'a> Assembly<'a> {
             crank: source.crank,
             trace,
             links: self.links.iter().map(as_ids).collect(),
+            places: self.links.iter().map(|link| link.iter().map(|(_, place)| *place).collect()).collect(),
             coincident_sq: coincident_sq(self.scale),
             names: self.names,
             steps: self.steps,

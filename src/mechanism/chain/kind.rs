@@ -4,6 +4,7 @@ use super::motion::Motion;
 use super::{Chain, ChainInput, Outcome, PointId, Pose};
 use crate::mechanism::any::{CrankRange, Link, Mechanism, MechanismMotion, MechanismPose, Status};
 use crate::mechanism::four_bar::motion::CrankMotion;
+use crate::mechanism::structure::Structure;
 
 /// Number of crank angles from which the range of the crank is found.
 pub const CYCLE_SAMPLES: usize = 720;
@@ -84,5 +85,8 @@ impl Mechanism for Chain {
             crank.length = Some(self.crank);
         }
         links
+    }
+    fn structure(&self) -> Structure {
+        self.parts()
     }
 }

@@ -19,7 +19,8 @@
 //! any point rigidly attached to a link. A mechanism that cannot be built in this order (an Assur group of a higher
 //! class, such as Stephenson's six-bar driven at its floating dyad) is no chain.
 //!
-//! Velocities and accelerations are in [`motion`], whole cycles in [`cycle`]; [`kind`] is the chain as a mechanism of any kind.
+//! Velocities and accelerations are in [`motion`], whole cycles in [`cycle`]; [`kind`] is the chain as a mechanism of any kind, and
+//! `structure` has its bodies and pairs.
 
 mod assembly;
 mod builder;
@@ -27,6 +28,7 @@ pub mod cycle;
 mod error;
 pub mod kind;
 pub mod motion;
+mod structure;
 
 pub use builder::{ChainBuilder, MAX_POINT_NAME, MAX_STAGES};
 pub use cycle::{ChainArc, ChainInput};
@@ -166,6 +168,8 @@ pub struct Chain {
     pub(super) steps: Vec<Step>,
     pub(super) trace: usize,
     pub(super) links: Vec<Vec<PointId>>,
+    /// The places of the points of each link in a frame of its own; of the ground, in the plane.
+    pub(super) places: Vec<Vec<Complex>>,
     /// |V|^2 at and below which two points coincide.
     pub(super) coincident_sq: f64,
     pub(super) source: ChainBuilder,

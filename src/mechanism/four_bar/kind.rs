@@ -5,6 +5,7 @@ use super::transmission::TransmissionExtremes;
 use crate::mechanism::any::{
     CrankRange, Link, Mechanism, MechanismMotion, MechanismPose, Output, OutputRate, Status,
 };
+use crate::mechanism::structure::{Body, Group, OutputBody, Pair, Structure};
 use crate::mechanism::{Complex, FourBar, Position};
 
 const NAMES: [&str; 5] = ["A", "B", "C", "D", "P"];
@@ -30,6 +31,19 @@ impl FourBar {
             coupler: posture.map(|p| (p.joints.follower_pin - p.joints.crank_pin) / self.coupler()),
             output: posture.map(|p| Output::Follower(p.follower_angle)),
             transmission: posture.map(|_| self.angle_at_follower_pin(crank_angle)),
+        }
+    }
+}
+
+impl Motion {
+    /// Returns the status of the motion.
+    pub fn status(&self) -> Status {
+        match self {
+            Motion::Definite(_) => Status::Ok,
+            Motion::Singular(_) => Status::Singular,
+            Motion::Open => Status::Open,
+            Motion::Undetermined => Status::Undetermined,
+            Motion::NotFinite => Status::NotFinite,
         }
     }
 }
@@ -61,14 +75,7 @@ impl Mechanism for FourBar {
 
     fn motion_at(&self, crank_angle: f64, input: CrankMotion) -> MechanismMotion {
         let found = self.motion(crank_angle, input);
-        let status = match found {
-            Motion::Definite(_) => Status::Ok,
-            Motion::Singular(_) => Status::Singular,
-            Motion::Open => Status::Open,
-            Motion::Undetermined => Status::Undetermined,
-            Motion::NotFinite => Status::NotFinite,
-        };
-        let pose = self.described(status, crank_angle, found.posture().as_ref());
+        let pose = self.described(found.status(), crank_angle, found.posture().as_ref());
         let moved = found.definite();
         let points = moved.map(|m| [m.crank_pin, m.follower_pin, m.coupler_point]);
         let of = |part: fn(&super::motion::PointMotion) -> Complex| {
@@ -115,5 +122,23 @@ impl Mechanism for FourBar {
 
     fn longest_to_shortest(&self) -> Option<f64> {
         Some(self.link_ratio()).filter(|ratio| ratio.is_finite())
+    }
+    fn structure(&self) -> Structure {
+        let x = |along: f64| Complex::new(along, 0.0);
+        let p = self.coupler_ratio() * self.coupler();
+        Structure {
+            bodies: vec![
+                Body::ground([(0, self.crank_pivot()), (1, self.follower_pivot())]),
+                Body::link("crank", &[(0, x(0.0)), (2, x(self.crank()))]),
+                Body::link("coupler", &[(2, x(0.0)), (3, x(self.coupler())), (4, p)]),
+                Body::link("follower", &[(1, x(0.0)), (3, x(self.follower()))]),
+            ],
+            crank_pivot: 0,
+            groups: vec![Group {
+                bodies: [2, 3],
+                pairs: [Pair::pin(2, [1, 2]), Pair::pin(1, [0, 3]), Pair::pin(3, [2, 3])],
+            }],
+            output: Some(OutputBody::Turns(3)),
+        }
     }
 }

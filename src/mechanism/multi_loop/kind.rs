@@ -5,6 +5,8 @@ use crate::mechanism::MAX_MAGNITUDE;
 use crate::mechanism::any::{CrankRange, Link, Mechanism, MechanismMotion, MechanismPose, Status};
 use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::mechanism::four_bar::transmission::TransmissionExtremes;
+use crate::mechanism::plates;
+use crate::mechanism::structure::Structure;
 use std::f64::consts::TAU;
 
 impl MultiLoop {
@@ -93,5 +95,14 @@ impl Mechanism for MultiLoop {
 
     fn longest_to_shortest(&self) -> Option<f64> {
         Some(self.link_ratio()).filter(|ratio| ratio.is_finite())
+    }
+    /// Returns the bodies by the names of their plates.
+    fn structure(&self) -> Structure {
+        let Ok(chain) = self.to_chain() else { return Structure::default() };
+        let mut structure = chain.structure();
+        for (body, link) in structure.bodies.iter_mut().zip(plates::Link::OF_BODIES) {
+            body.name = link.name().to_owned();
+        }
+        structure
     }
 }

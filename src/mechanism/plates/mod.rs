@@ -38,6 +38,7 @@
 //! | `displacement` | bounds of the motion of six-bars and eight-bars |
 //! | `guide` | the block of a slider and the slot that it runs in |
 //! | `hull`, `outline`, `separation` | geometry of one plate, and of two |
+//! | `moments` | area, centroid and second moment of an outline |
 //! | `joint`, `kind`, `motion`, `parts` | joints and pins; what a kind gives; intervals of the motion; all parts of a linkage |
 
 mod displacement;
@@ -47,6 +48,7 @@ mod hull;
 mod inverted_slider_crank;
 mod joint;
 mod kind;
+pub mod moments;
 mod motion;
 mod multi_loop;
 mod outline;

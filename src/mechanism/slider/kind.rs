@@ -6,6 +6,7 @@ use crate::mechanism::any::{
     CrankRange, Link, Mechanism, MechanismMotion, MechanismPose, Output, OutputRate, Slide, Status,
 };
 use crate::mechanism::four_bar::transmission::TransmissionExtremes;
+use crate::mechanism::structure::{Body, Frame, Group, Line, OutputBody, Pair, Structure};
 use crate::mechanism::{Complex, InvertedSliderCrank, SliderCrank, turned};
 
 /// Names, joints and guide of a linkage with a slider, which make it a mechanism of any kind.
@@ -18,7 +19,12 @@ trait Described: SliderLinkage {
     fn fixed(&self) -> Vec<Complex>;
     fn coupler_link(&self, first: usize) -> Link;
     fn guide(&self, first: usize) -> Slide;
+    fn parts(&self) -> Structure;
     fn ratio(&self) -> f64;
+}
+
+fn along(x: f64) -> Complex {
+    Complex::new(x, 0.0)
 }
 
 impl Described for SliderCrank {
@@ -36,6 +42,25 @@ impl Described for SliderCrank {
 
     fn guide(&self, first: usize) -> Slide {
         Slide::Rail { block: first + 1, through: self.line_point(), direction: self.line_direction() }
+    }
+
+    fn parts(&self) -> Structure {
+        let [a, c, d, p] = [0, 1, 2, 3];
+        let coupler = [(c, along(0.0)), (d, along(self.coupler())), (p, self.coupler_offset())];
+        Structure {
+            bodies: vec![
+                Body::ground([(a, self.crank_pivot())]),
+                Body::link("crank", &[(a, along(0.0)), (c, along(self.crank()))]),
+                Body::link("coupler", &coupler),
+                Body::block("block", Line::Fixed(self.line_direction()), &[(d, along(0.0))]),
+            ],
+            crank_pivot: a,
+            groups: vec![Group {
+                bodies: [2, 3],
+                pairs: [Pair::pin(c, [1, 2]), Pair::pin(d, [2, 3]), Pair::slide(d, [0, 3])],
+            }],
+            output: Some(OutputBody::Slides(3)),
+        }
     }
 
     fn ratio(&self) -> f64 {
@@ -61,6 +86,33 @@ impl Described for InvertedSliderCrank {
 
     fn guide(&self, first: usize) -> Slide {
         Slide::Rod { from: first, foot: first + 1, pivot: 1 }
+    }
+
+    fn parts(&self) -> Structure {
+        let [a, b, c, d, p] = [0, 1, 2, 3, 4];
+        let coupler = Body {
+            name: "coupler".to_owned(),
+            frame: Frame::Coupler(c),
+            joints: vec![(c, along(0.0)), (p, self.coupler_offset())],
+            is_plain: false,
+        };
+        // B lies `offset` to the left of D, the foot on the rod.
+        let foot = Complex::new(0.0, -self.offset());
+        let line = Line::OnBody { body: 2, turn: along(1.0) };
+        Structure {
+            bodies: vec![
+                Body::ground([(a, self.crank_pivot()), (b, self.block_pivot())]),
+                Body::link("crank", &[(a, along(0.0)), (c, along(self.crank()))]),
+                coupler,
+                Body::block("block", line, &[(b, along(0.0)), (d, foot)]),
+            ],
+            crank_pivot: a,
+            groups: vec![Group {
+                bodies: [2, 3],
+                pairs: [Pair::pin(c, [1, 2]), Pair::pin(b, [0, 3]), Pair::slide(b, [2, 3])],
+            }],
+            output: Some(OutputBody::Turns(3)),
+        }
     }
 
     fn ratio(&self) -> f64 {
@@ -151,6 +203,10 @@ macro_rules! mechanism {
                 let first = self.pivots();
                 let crank = Link { name: "crank".into(), joints: vec![0, first], length: Some(self.crank()) };
                 vec![crank, self.coupler_link(first)]
+            }
+
+            fn structure(&self) -> Structure {
+                self.parts()
             }
 
             fn slide(&self) -> Option<Slide> {

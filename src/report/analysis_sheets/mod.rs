@@ -7,6 +7,7 @@
 //! | velocities, accelerations | De Castro, figures 3.2 and 4.1 | the input moves |
 //! | the four configurations | Romero, figure 3 | all four were asked for |
 //! | curves over the cycle | | from [`CYCLE_ROWS`] rows on |
+//! | torque over the crank's range | | there are loads |
 //!
 //! The figures are those of the analysis; only curves are computed from the linkage's own kinematics.
 
@@ -17,6 +18,7 @@ mod positions;
 mod vectors;
 
 use super::canvas::{Canvas, View, filled, palette};
+use super::loads;
 use super::parts::{UP, letter, stand};
 use super::scene::{Pose, Scene, circuits_through, middle_position};
 use super::sheet::{FULL, HALF, Sheet, dimensions, page};
@@ -67,6 +69,8 @@ fn sheets(analysis: &Analysis) -> Vec<Sheet> {
     }
     sheets.extend(configurations::sheet(analysis));
     sheets.extend(cycle::sheet(analysis, configuration));
+    let of_loads = analysis.loads.as_ref();
+    sheets.extend(of_loads.and_then(|record| loads::sheet(record, &analysis.mobility.toggles_deg)));
     sheets
 }
 

@@ -4,7 +4,7 @@ use super::data::{MOST_ALTERNATIVES, candidate_key};
 use super::extras::{Shown, extras};
 use super::page::{paragraph, still};
 use super::table::{Cell, Column, minus, tabulated};
-use super::{dimensions, function, mobility, page, requirements};
+use super::{dimensions, function, loads, mobility, page, requirements};
 use crate::record::{Alternative, Candidate, Pick, Record};
 use crate::report::text::{clean, significant};
 use crate::report::{picks, words};
@@ -53,6 +53,7 @@ fn article(
             @if let Some(drawing) = drawing { (still(drawing)) }
             (figures(record, c))
             (function::function(record, c, title))
+            @if drawing.is_some() { (loads::loads(record, c, title)) }
             div.columns {
                 div {
                     h3 { "What it can do" }
@@ -98,6 +99,10 @@ fn figures(record: &Record, c: &Candidate) -> Markup {
         ("longest to shortest link", html! { (significant(c.link_ratio, 4)) }),
         ("verdict", html! { span class=(class) { (verdict) } }),
     ]);
+    if let Some(torque) = c.peak_torque {
+        let place = list.len() - 1;
+        list.insert(place, ("peak torque", html! { (significant(torque, 4)) small { " N m" } }));
+    }
     page::figures(list)
 }
 

@@ -7,7 +7,7 @@ use super::scatter::scatter_svg;
 use super::table::{Cell, Column, scrolling};
 use crate::record::{Front, Member, Record};
 use crate::report::contact_sheet::thumbnail_svg;
-use crate::report::front::{LIMITS, meaning};
+use crate::report::front::{LIMITS, TORQUE_MEANS, has_torque, meaning};
 use crate::report::text::{capitalised, clean, grouped, significant};
 use crate::report::{table as text_table, words};
 use maud::{Markup, html};
@@ -94,7 +94,7 @@ fn sections(record: &Record, front: &Front) -> Markup {
 }
 
 fn members(record: &Record, front: &Front) -> Markup {
-    let columns: [Column<&Member>; 9] = [
+    let mut columns: Vec<Column<&Member>> = vec![
         ("rms error", true, &|m| Cell::figure(m.figures.rms, 4)),
         ("largest", true, &|m| Cell::figure(m.figures.max, 4)),
         ("transmission", true, &|m| Cell::degrees(m.figures.transmission_deg)),
@@ -105,6 +105,14 @@ fn members(record: &Record, front: &Front) -> Markup {
         ("type", false, &|m| Cell::words(m.candidate.type_name())),
         ("", false, &|m| Cell { class: Some("knee"), ..Cell::words(if m.knee { "knee" } else { "" }) }),
     ];
+    let has_torque = has_torque(front);
+    if has_torque {
+        let torque: Column<&Member> = ("peak torque, N m", true, &|m| {
+            m.figures.peak_torque.map_or(Cell::words(""), |t| Cell::figure(t, 4))
+        });
+        columns.insert(7, torque);
+    }
+    let torque = if has_torque { TORQUE_MEANS } else { "" };
     let heads: Vec<(&str, bool)> =
         std::iter::once(("#", true)).chain(columns.iter().map(|column| (column.0, column.1))).collect();
     let rows = numbered(front).map(|(n, member)| {
@@ -124,7 +132,7 @@ fn members(record: &Record, front: &Front) -> Markup {
     };
     html! {
         (scrolling("Members of the front", "wide tight", &heads, rows))
-        (paragraph("notes", &format!("{lengths}{NOTES}")))
+        (paragraph("notes", &format!("{lengths}{NOTES}{torque}")))
     }
 }
 

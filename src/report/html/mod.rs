@@ -6,6 +6,7 @@
 //! body.rs         the page's sections in their order; a new section is a line there
 //! table.rs        candidates side by side
 //! candidate.rs    one candidate in words: mobility.rs, requirements.rs, dimensions.rs
+//! loads.rs        the torque on the crank of one candidate, and the forces of its joints
 //! function.rs     the function of one candidate: its graph, the error, the pairs
 //! picks.rs        the closest, the smallest, the best transmitting and the buildable linkage side by side
 //! extras.rs       the linkages that the page shows beside the ranked candidates
@@ -33,6 +34,7 @@ mod exact;
 mod extras;
 mod front;
 mod function;
+mod loads;
 mod mobility;
 mod motion;
 pub(super) mod page;

@@ -143,6 +143,7 @@ impl Plot {
 fn named((axis, scale, _): &Scaled, unit: &str) -> String {
     let unit = match axis {
         Axis::Transmission | Axis::LinkRatio | Axis::Sensitivity => "",
+        Axis::PeakTorque => "N m",
         Axis::Rms | Axis::Max | Axis::Extent | Axis::Longest => unit,
     };
     let unit = if unit.is_empty() { String::new() } else { format!(" [{}]", unit.trim()) };
@@ -172,7 +173,8 @@ fn bar(canvas: &mut Canvas, axis: Axis, scale: &Scale, unit: &str) {
     }
     let unit = match axis {
         Axis::Transmission | Axis::LinkRatio | Axis::Sensitivity => "",
-        _ => unit.trim(),
+        Axis::PeakTorque => "N m",
+        Axis::Rms | Axis::Max | Axis::Extent | Axis::Longest => unit.trim(),
     };
     let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
     let good = if axis == Axis::Transmission { "large" } else { "small" };

@@ -32,7 +32,7 @@ use crate::judge::rank::chosen;
 use crate::judge::trade_off::{Wishes, knees, members, undominated};
 use crate::record::{Axis, Candidate, Evaluations, Figures, Front, LEAST_AXES, MOST_AXES, Member, Reason};
 use crate::task::Problem;
-use crate::task::spec::Objective;
+use crate::task::spec::{Objective, ProblemSpec};
 use archive::Archive;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -67,9 +67,26 @@ pub enum AxesError {
     /// No axis is an error.
     #[error("--axes {0}: add rms or max; without an error any small linkage is the best")]
     NoError(String),
+    /// A torque is named for a problem without loads.
+    #[error(
+        "--axes {0}: peak_torque needs loads, and the problem has no table [loads]; add one, or leave the axis out"
+    )]
+    NoLoads(String),
 }
 
 impl FrontRequest {
+    /// Checks that the problem has loads if a torque is an axis.
+    ///
+    /// # Errors
+    /// [`AxesError::NoLoads`].
+    pub fn check_loads(&self, spec: &ProblemSpec) -> Result<(), AxesError> {
+        if self.axes.contains(&Axis::PeakTorque) && spec.loads.is_none() {
+            let names: Vec<&str> = self.axes.iter().map(|axis| axis.name()).collect();
+            return Err(AxesError::NoLoads(names.join(",")));
+        }
+        Ok(())
+    }
+
     /// Checks the number of axes, that none is named twice, and that an error is among them.
     ///
     /// # Errors
@@ -321,7 +338,9 @@ impl<'a> Search<'a> {
         let found: Vec<Option<Figures>> = good.par_iter().map(|(c, _)| figures(problem, c)).collect();
         let mut taken = Vec::new();
         for ((candidate, limits), figures) in good.into_iter().zip(found) {
-            let Some(figures) = figures else { continue };
+            let is_whole =
+                |figures: &Figures| self.request.axes.iter().all(|axis| figures.of(*axis).is_finite());
+            let Some(figures) = figures.filter(is_whole) else { continue };
             taken.push(figures);
             self.archive.extend([(Entry { candidate, limits }, figures)]);
         }

@@ -63,6 +63,7 @@ pub fn own_curve(linkage: &CrankLinkage) -> Option<(Problem, Candidate)> {
         design: DesignSpec { mechanism, ..DesignSpec::default() },
         require,
         solve: SolveSpec::default(),
+        loads: None,
     };
     let problem = Problem::new(spec).ok()?;
     let crank_deg: Vec<f64> = at.iter().map(|at| at.crank_angle.to_degrees()).collect();

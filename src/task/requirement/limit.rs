@@ -13,6 +13,8 @@ pub enum LimitUnit {
     Degree,
     /// One more of longest over shortest.
     Ratio,
+    /// A newton metre.
+    Torque,
 }
 
 impl LimitUnit {
@@ -21,7 +23,7 @@ impl LimitUnit {
         match self {
             LimitUnit::Length => size,
             LimitUnit::Degree => 180.0,
-            LimitUnit::Ratio => 1.0,
+            LimitUnit::Ratio | LimitUnit::Torque => 1.0,
         }
     }
 }

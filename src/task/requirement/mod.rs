@@ -17,6 +17,7 @@ mod link_ratio;
 mod linkage_type;
 mod longest_max;
 mod order;
+mod peak_torque_max;
 mod pins_in;
 mod pivot_on;
 mod pivots_in;
@@ -66,6 +67,8 @@ pub enum RequirementKind {
     ExtentMax,
     /// The key `require.longest_max`.
     LongestMax,
+    /// The key `require.peak_torque_max`.
+    PeakTorque,
     /// The key `require.stroke`.
     Stroke,
     /// The key `require.time_ratio`.
@@ -88,7 +91,7 @@ pub enum RequirementKind {
 
 impl RequirementKind {
     /// Every kind, in the order in which conflicts name them and relaxations try them.
-    pub const IN_CONFLICTS: [RequirementKind; 19] = [
+    pub const IN_CONFLICTS: [RequirementKind; 20] = [
         Self::Transmission,
         Self::PivotsIn,
         Self::PivotOn,
@@ -97,6 +100,7 @@ impl RequirementKind {
         Self::ExtentMax,
         Self::LongestMax,
         Self::LinkRatio,
+        Self::PeakTorque,
         Self::Tolerance,
         Self::ToleranceDeg,
         Self::Stroke,
@@ -143,7 +147,7 @@ impl RequirementKind {
     }
 
     /// Returns every kind, in the order of a record.
-    pub fn all() -> [RequirementKind; 19] {
+    pub fn all() -> [RequirementKind; 20] {
         let mut kinds = Self::IN_CONFLICTS;
         kinds.sort_unstable();
         kinds
@@ -162,6 +166,7 @@ impl RequirementKind {
             Self::FootprintIn => &footprint_in::FOOTPRINT_IN,
             Self::ExtentMax => &extent_max::EXTENT_MAX,
             Self::LongestMax => &longest_max::LONGEST_MAX,
+            Self::PeakTorque => &peak_torque_max::PEAK_TORQUE_MAX,
             Self::Stroke => &stroke::STROKE,
             Self::TimeRatio => &stroke::TIME_RATIO,
             Self::Direction => &direction::DIRECTION,
@@ -344,6 +349,9 @@ pub(crate) struct RawRequire {
     /// The greatest length of the longest of ground, a, b, c, d and e; "any" for no limit. Where silent, 3 sizes of a
     /// target with free timing, unless `[design]` bounds a length, extent_max is given or the pivots lie too far out; else any.
     pub longest_max: Option<LengthOrAny>,
+    /// The greatest size of the torque on the crank, N m, under the loads of the problem and at their speed: over a full turn of a
+    /// crank that turns fully, else between the crank angles used. Needs [loads].
+    pub peak_torque_max: Option<Number>,
     /// The distance between the ends of a slider-crank's slider: a length, or [least, greatest]. The crank turns fully.
     pub stroke: Option<Bounds>,
     /// The crank's angle for the slower way of the slider over that for the quicker one, 1 or more: a number, or [least,
@@ -401,6 +409,9 @@ pub struct RequireSpec {
     /// The greatest length of the longest of ground, a, b, c, d and e; absent: any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest_max: Option<f64>,
+    /// The greatest size of the torque on the crank under the loads, N m; absent: any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_torque_max: Option<f64>,
     /// The bounds of the distance between the ends of a slider-crank's slider; absent: any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stroke: Option<Limits>,
@@ -476,6 +487,7 @@ impl From<RawRequire> for RequireSpec {
             footprint_in: corners(raw.footprint_in),
             extent_max: number(raw.extent_max),
             longest_max: raw.longest_max.and_then(LengthOrAny::length),
+            peak_torque_max: number(raw.peak_torque_max),
             stroke: raw.stroke.map(|bounds| bounds.0),
             time_ratio: raw.time_ratio.map(|bounds| bounds.0),
             order: raw.order,

@@ -124,6 +124,7 @@ pub fn candidate(
             over,
         },
         link_ratio: linkage.link_ratio(),
+        peak_torque: None,
         defects: verdict.defects,
         warnings: Vec::new(),
         alternatives: Vec::new(),
@@ -150,6 +151,7 @@ pub fn record(name: &str, path: TaskSpec) -> Record {
             unit: None,
             digest: "0".repeat(64),
             resolved: ProblemSpec {
+                loads: None,
                 task: path,
                 design: DesignSpec::default(),
                 require: RequireSpec::default(),

@@ -11,6 +11,7 @@
 //!   extreme position (Danskin 1967);
 //! - extent: the limit less the diagonal of the box of all joints, by its sides;
 //! - longest link: L - l for each of ground, a, b, c, d and e;
+//! - peak torque: size (1 - |T|/T_max) at the crank angle at which |T| is largest (Danskin 1967);
 //! - derived bounds of the design space.
 //!
 //! Every g is aimed at with a small margin, so that a requirement that the search counts as met is met for the referee
@@ -24,6 +25,7 @@ mod footprint_in;
 mod link_ratio;
 mod linkage_type;
 mod longest_max;
+mod peak_torque;
 mod pins_in;
 mod pivot_on;
 mod pivots_in;
@@ -33,7 +35,7 @@ mod transmission;
 use super::design_space::{Derived, DerivedBound, SHAPE, Shape};
 use crate::mechanism::{AssemblyMode, Complex, LinkageType, cross, length, unit_vector};
 use crate::task::requirement::RequirementKind;
-use crate::task::spec::{RequireSpec, TransmissionOver};
+use crate::task::spec::{LoadsSpec, RequireSpec, TransmissionOver};
 
 pub use linkage_type::nearest_type;
 
@@ -185,12 +187,20 @@ pub struct Requirements {
     size: f64,
     require: RequireSpec,
     derived: Vec<DerivedBound>,
+    loads: Option<LoadsSpec>,
 }
 
 impl Requirements {
     /// Creates the requirements of a problem whose target has the given size.
     pub fn new(require: &RequireSpec, derived: &[DerivedBound], size: f64) -> Self {
-        Requirements { size, require: require.clone(), derived: derived.to_vec() }
+        Requirements { size, require: require.clone(), derived: derived.to_vec(), loads: None }
+    }
+
+    /// Returns the requirements under the loads of a problem, which only that on the torque reads.
+    #[must_use]
+    pub fn under(mut self, loads: Option<&LoadsSpec>) -> Self {
+        self.loads = loads.filter(|_| self.require.peak_torque_max.is_some()).cloned();
+        self
     }
 
     /// Calls `each` for every requirement, always as many and in the same order for the same problem and the
@@ -217,12 +227,14 @@ impl Requirements {
         footprint_in::rows(&at, each);
         extent_max::rows(&at, each);
         longest_max::rows(&at, each);
+        peak_torque::rows(&at, each);
     }
 
     /// Returns whether a row depends on the motion, and not on the shape alone.
     pub fn depend_on_motion(&self) -> bool {
         let used = self.require.transmission_over != Some(TransmissionOver::Cycle);
         self.require.footprint_in.is_some()
+            || self.loads.is_some()
             || self.require.extent_max.is_some()
             || (self.require.transmission_deg_min.is_some() && used)
     }
@@ -245,6 +257,7 @@ impl Requirements {
 struct At<'a> {
     size: f64,
     require: &'a RequireSpec,
+    loads: Option<&'a LoadsSpec>,
     shape: &'a Shape,
     motion: &'a Motion<'a>,
     /// The direction from A to B.
@@ -261,6 +274,7 @@ impl<'a> At<'a> {
         At {
             size: requirements.size,
             require: &requirements.require,
+            loads: requirements.loads.as_ref(),
             shape,
             motion,
             ground: g,

@@ -1,0 +1,71 @@
+//! Loads of a six-bar: torque and all joint forces at 3,600 crank angles, and the figures over a turn. Torques by power balance and
+//! by Newton-Euler are asserted to agree before they are timed.
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use linkwright::analysis::CrankMotion;
+use linkwright::internals::files::linkage_file;
+use linkwright::internals::mechanism::Unit;
+use linkwright::internals::mechanism::loads::{
+    BodyMass, Force, ForceVector, LoadedLinkage, Loads, Mass, Place, Quantity, Spring,
+};
+use std::f64::consts::TAU;
+use std::hint::black_box;
+use std::path::Path;
+
+const POSITIONS: usize = 3600;
+
+fn loads(c: &mut Criterion) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/linkages/watt-six-bar.toml");
+    let linkage = linkage_file::load_any(&path).expect("it is shipped").linkage;
+    let mechanism = linkage.mechanism();
+    let (structure, joints) = (mechanism.structure(), mechanism.joint_names());
+    let traced = joints[mechanism.traced()].to_owned();
+    let mass = Mass::Given { mass_kg: 0.3, center: [0.02, 0.005], inertia_kg_m2: 1e-4 };
+    let of_body = |name: &String| BodyMass { body: name.clone(), mass };
+    let push = ForceVector::Vector(Quantity::Constant([0.0, -10.0]), None);
+    let ends = [Place::Joint(traced.clone()), Place::Fixed([0.1, 0.2])];
+    let loads = Loads {
+        gravity: [0.0, -9.81],
+        bodies: structure.bodies.iter().skip(1).map(|body| of_body(&body.name)).collect(),
+        forces: vec![Force { at: Place::Joint(traced), body: None, vector: push }],
+        springs: vec![Spring::Extension { ends, rate: 400.0, free_length: 0.03 }],
+        ..Loads::default()
+    };
+    let loaded = LoadedLinkage::new(&linkage, Unit::Cm, &loads).expect("its names are known");
+    let scratch = &mut loaded.scratch();
+    let input = CrankMotion::steady(10.0);
+    let angles: Vec<f64> = (0..POSITIONS).map(|i| TAU * i as f64 / POSITIONS as f64).collect();
+    let mut closed = 0;
+    for angle in &angles {
+        let Ok((power, size)) = loaded.torque_and_size(*angle, input, scratch) else { continue };
+        loaded.balance(*angle, input, scratch).expect("it closes");
+        assert!((scratch.torque() - power).abs() <= 1e-10 * size, "{angle}: {power}");
+        closed += 1;
+    }
+    assert!(closed > POSITIONS / 2, "{closed}");
+
+    let mut group = c.benchmark_group("loads of a six-bar");
+    group.throughput(Throughput::Elements(POSITIONS as u64));
+    group.bench_function("3,600 angles, all joint forces", |b| {
+        b.iter(|| {
+            let mut sum = 0.0;
+            for angle in &angles {
+                if loaded.balance(black_box(*angle), input, scratch).is_ok() {
+                    sum += scratch.torque();
+                }
+            }
+            sum
+        });
+    });
+    group.bench_function("3,600 angles, torque alone", |b| {
+        b.iter(|| {
+            let torque = |angle: &f64| loaded.torque(black_box(*angle), input, scratch).unwrap_or_default();
+            angles.iter().map(torque).sum::<f64>()
+        });
+    });
+    group.finish();
+    c.bench_function("figures of a six-bar over a turn", |b| b.iter(|| black_box(&loaded).figures(input)));
+}
+
+criterion_group!(benches, loads);
+criterion_main!(benches);
