@@ -2,6 +2,7 @@
 
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Column, Grid, Ink, plain};
+use super::shop::shop_text;
 use super::text::{COLUMNS, brief, capitalised, indented, significant, wrapped};
 use super::words::length_suffix;
 use crate::judge::practicality::clearance::PivotDistance;
@@ -42,6 +43,7 @@ pub fn practicality_text(
         }
         None => out.push_str(OPEN),
     }
+    out.push_str(&shop_text(practicality, unit, colour));
     out.push_str(&words.head("Least distances of joints over the motion"));
     match &practicality.distances {
         Some(distances) => out.push_str(&words.distances(distances, 2.0 * practicality.build.pin_radius)),

@@ -502,8 +502,7 @@ fn a_motion_past_a_toggle_is_split_there() {
                 .to_vec(),
             ..sweep.clone()
         };
-        let build =
-            Build::of_radii(0.05 * l.longest_link(), 0.02 * l.longest_link());
+        let build = Build::of_radii(0.05 * l.longest_link(), 0.02 * l.longest_link());
         let one = Workpieces::new(&sweep, &build)
             .expect("closed")
             .between_plates(Link::Crank, Link::Follower)
@@ -548,6 +547,9 @@ fn a_motor_widens_the_plates_at_its_holes_and_stands_at_a() {
     // One of the two alone: the boss is as the shaft, and a smaller shaft narrows no plate.
     let thin = pins.clone().with_motor(Some(2.0), None);
     assert_eq!(thin.bores.own(Link::Ground, Joint::A), Some(2.0));
-    assert_eq!((thin.radius_of(Link::Crank), thin.radius_at(&Pin::new(Joint::A, Link::Ground, Link::Crank))), (5.0, 1.0));
+    assert_eq!(
+        (thin.radius_of(Link::Crank), thin.radius_at(&Pin::new(Joint::A, Link::Ground, Link::Crank))),
+        (5.0, 1.0)
+    );
     assert_eq!(pins.clone().with_motor(None, None), pins);
 }

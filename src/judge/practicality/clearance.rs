@@ -3,7 +3,7 @@
 use super::closest::{Closest, Until, closest};
 use super::sweep::{Position, Positions, Reach, Sweep};
 pub use crate::mechanism::plates::Joint;
-use crate::mechanism::plates::shop::Names;
+use crate::mechanism::plates::shop::{Names, THICKNESS_SHARE};
 use crate::mechanism::plates::{Bores, Guide, Link, Parts, Pin, Plate, Shop, Sizes, parts};
 use crate::mechanism::{CrankLinkage, FourBar, LoopJoints, Unit, length};
 
@@ -63,6 +63,13 @@ impl Build {
         let own = self.shop.as_ref().and_then(|shop| shop.width_of(link));
         let usual = || self.plate_radius + (0.5 * self.bores.largest(link) - self.pin_radius).max(0.0);
         own.map_or_else(usual, |width| 0.5 * width)
+    }
+
+    /// Returns the thickness of a plate: its own, that of all plates, or a part of the usual hole.
+    pub fn thickness_of(&self, link: Link) -> f64 {
+        let usual = THICKNESS_SHARE * self.bores.usual;
+        let of = |shop: &Shop| shop.thickness_of(link, shop.thickness.unwrap_or(usual));
+        self.shop.as_ref().map_or(usual, of)
     }
 
     /// Returns the radius of a pin, or of the motor's shaft.

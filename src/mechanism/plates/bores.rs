@@ -46,7 +46,9 @@ impl Bores {
         }
         let shaft = shaft.or(self.own(Link::Crank, Joint::A)).unwrap_or(self.usual);
         let boss = boss.or(self.own(Link::Ground, Joint::A)).unwrap_or(shaft);
-        self.with_hole(Joint::A, Link::Crank, shaft).with_hole(Joint::A, Link::Ground, boss).with_pin(Joint::A, shaft)
+        self.with_hole(Joint::A, Link::Crank, shaft)
+            .with_hole(Joint::A, Link::Ground, boss)
+            .with_pin(Joint::A, shaft)
     }
 
     /// Returns the own diameter of the hole of a joint in a plate.

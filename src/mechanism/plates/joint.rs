@@ -57,7 +57,8 @@ impl Joint {
     /// Returns the joints of names that are written one after the other: `CX2`.
     pub fn all_named(letters: &str) -> Vec<Joint> {
         // Every name is a capital letter, or one with a digit behind it.
-        let starts: Vec<usize> = letters.char_indices().filter(|(_, c)| c.is_alphabetic()).map(|(i, _)| i).collect();
+        let starts: Vec<usize> =
+            letters.char_indices().filter(|(_, c)| c.is_alphabetic()).map(|(i, _)| i).collect();
         let ends = starts.iter().skip(1).copied().chain([letters.len()]);
         starts.iter().zip(ends).filter_map(|(start, end)| Joint::named(letters.get(*start..end)?)).collect()
     }

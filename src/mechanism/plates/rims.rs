@@ -36,7 +36,8 @@ impl Plate {
         let half = |joints: &str| 0.5 * bores.of(self.link, joints);
         let mut rims = Vec::new();
         for (i, (joints, at)) in holes.iter().enumerate() {
-            let mut push = |beside: Beside, width: f64| rims.push(Rim { joints: joints.clone(), beside, width });
+            let mut push =
+                |beside: Beside, width: f64| rims.push(Rim { joints: joints.clone(), beside, width });
             push(Beside::Edge, -self.distance(&Placement::HOME, *at) - half(joints));
             if let Some(slot) = &self.slot {
                 push(Beside::Slot, slot.distance(*at) - half(joints) - 0.5 * bores.usual);

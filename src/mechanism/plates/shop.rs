@@ -7,6 +7,9 @@ use crate::mechanism::{CrankLinkage, Unit};
 /// (EN 1993-1-8:2005, table 3.3, the least edge distances e1 and e2 of a bolt's hole).
 pub const RIM_SHARE: f64 = 0.7;
 
+/// The thickness of a plate by default, in diameters of the usual hole.
+pub const THICKNESS_SHARE: f64 = 0.75;
+
 /// The sizes of a joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointSizes {
@@ -242,7 +245,8 @@ impl Shop {
     /// Returns the least rim that a hole of this diameter needs; `letters` are the names of the joints at its place.
     pub fn rim_of(&self, letters: &str, hole: f64) -> f64 {
         let joints = Joint::all_named(letters);
-        let own = self.joints.iter().filter(|(joint, _)| joints.contains(joint)).filter_map(|(_, sizes)| sizes.rim);
+        let own =
+            self.joints.iter().filter(|(joint, _)| joints.contains(joint)).filter_map(|(_, sizes)| sizes.rim);
         own.reduce(f64::max).or(self.rim).unwrap_or(RIM_SHARE * hole)
     }
 
