@@ -106,3 +106,67 @@ fn in_stack(
         plates: plates.iter().map(|(_, link)| *link).collect(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::judge::practicality::layers::Layering;
+    use crate::mechanism::plates::Sizes;
+    use crate::synthesis::fixture::linkage;
+
+    /// Returns the layering of a four-bar with layers that are given.
+    fn layering(layers: Vec<Vec<Link>>) -> (Parts, Layering) {
+        let sizes = Sizes { hole: 4.0, margin: 4.0 };
+        let parts = Parts::new(linkage([40.0, 20.0, 50.0, 50.0]), sizes, &[]).expect("a four-bar");
+        let layering = Layering {
+            links: parts.links(),
+            traced: Link::Coupler,
+            all_pins: parts.pins(),
+            free_pairs: Vec::new(),
+            pins_plates: Vec::new(),
+            pins: Vec::new(),
+            stack: Some(Stack { layers, through: Vec::new() }),
+        };
+        (parts, layering)
+    }
+
+    #[test]
+    fn pins_are_as_long_as_their_stack_and_spacers_fill_empty_layers() {
+        use Link::{Coupler, Crank, Follower, Ground};
+        let (parts, found) = layering(vec![vec![Ground], vec![Crank], vec![Coupler], vec![Follower]]);
+        let thickness = |link: Link| match link {
+            Ground => 6.0,
+            Coupler => 2.0,
+            _ => 3.0,
+        };
+        let pins = pin_lengths(&found, &parts, &Bores::new(4.0), thickness).expect("a stack");
+        let told: Vec<_> = pins.iter().map(|pin| (pin.name(), pin.length, pin.spacers.clone())).collect();
+        let spacer = Spacer { between: [Ground, Follower], length: 5.0 };
+        let expected = [
+            ("A".to_owned(), 9.0, vec![]),
+            // Over the crank of 3 and the coupler of 2: 6 + 3 + 2 + 3.
+            ("B".to_owned(), 14.0, vec![spacer]),
+            ("C".to_owned(), 5.0, vec![]),
+            ("D".to_owned(), 5.0, vec![]),
+        ];
+        assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn a_plate_that_is_thinner_than_its_layer_has_a_spacer_above_it() {
+        use Link::{Coupler, Crank, Follower, Ground};
+        let (parts, found) = layering(vec![vec![Ground], vec![Crank, Follower], vec![Coupler]]);
+        let thickness = |link: Link| if link == Follower { 2.0 } else { 3.0 };
+        let pins = pin_lengths(&found, &parts, &Bores::new(4.0), thickness).expect("a stack");
+        let of = |name: &str| pins.iter().find(|pin| pin.name() == name).expect("a pin");
+        assert_eq!((of("B").length, of("B").spacers.len()), (5.0, 0));
+        assert_eq!((of("D").length, of("D").plates.clone()), (6.0, vec![Follower, Coupler]));
+        assert_eq!(of("D").spacers, [Spacer { between: [Follower, Coupler], length: 1.0 }]);
+        // Each pin is as long as its plates and spacers together.
+        for pin in &pins {
+            let plates: f64 = pin.plates.iter().map(|link| thickness(*link)).sum();
+            let spacers: f64 = pin.spacers.iter().map(|spacer| spacer.length).sum();
+            assert!((pin.length - plates - spacers).abs() < 1e-12, "{pin:?}");
+        }
+    }
+}

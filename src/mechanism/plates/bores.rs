@@ -108,3 +108,39 @@ impl Bores {
         self.joints().into_iter().map(of).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coincident_holes_have_the_largest_own_diameter_and_pins_the_smaller_of_their_two() {
+        let bores = Bores::new(4.0)
+            .with_hole(Joint::C, Link::Coupler, 3.0)
+            .with_hole(Joint::D, Link::Coupler, 10.0)
+            .with_hole(Joint::X2, Link::Coupler, 6.0);
+        assert_eq!(bores.of(Link::Coupler, "P"), 4.0);
+        assert_eq!(bores.of(Link::Coupler, "CP"), 3.0);
+        assert_eq!(bores.of(Link::Coupler, "CX2"), 6.0);
+        assert_eq!((bores.of(Link::Crank, "C"), bores.of(Link::Coupler, "")), (4.0, 4.0));
+        assert_eq!((bores.largest(Link::Coupler), bores.largest(Link::Crank)), (10.0, 4.0));
+        let pin = |joint, other| bores.pin(&Pin::new(joint, Link::Coupler, other));
+        assert_eq!((pin(Joint::C, Link::Crank), pin(Joint::D, Link::Follower)), (3.0, 4.0));
+        let thin = bores.clone().with_pin(Joint::D, 2.5);
+        assert_eq!(thin.pin(&Pin::new(Joint::D, Link::Coupler, Link::Follower)), 2.5);
+        assert_eq!(Joint::all_named("ABX2F3P"), [Joint::A, Joint::B, Joint::X2, Joint::F3, Joint::P]);
+    }
+
+    #[test]
+    fn a_boss_is_as_wide_as_the_shaft_unless_it_has_a_size() {
+        let of = |bores: &Bores| {
+            let holes = [Link::Crank, Link::Ground].map(|link| bores.of(link, "A"));
+            (holes, bores.pin(&Pin::new(Joint::A, Link::Ground, Link::Crank)))
+        };
+        assert_eq!(of(&Bores::new(4.0).with_motor(Some(6.0), None)), ([6.0, 6.0], 6.0));
+        assert_eq!(of(&Bores::new(4.0).with_motor(None, Some(20.0))), ([4.0, 20.0], 4.0));
+        let given = Bores::new(4.0).with_hole(Joint::A, Link::Ground, 22.0);
+        assert_eq!(of(&given.clone().with_motor(Some(6.0), None)), ([6.0, 22.0], 6.0));
+        assert_eq!(of(&given.with_motor(None, None)), ([4.0, 22.0], 4.0));
+    }
+}

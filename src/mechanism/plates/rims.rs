@@ -49,3 +49,49 @@ impl Plate {
         rims
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::plates::{Edge, Hole, Joint, Link};
+    use crate::mechanism::{Complex, point};
+
+    /// Returns points of an outline, `n` on each edge.
+    fn sampled(plate: &Plate, n: usize) -> Vec<Complex> {
+        let on = |edge: &Edge, share: f64| match *edge {
+            Edge::Line { from, to } => from + (to - from) * share,
+            Edge::Arc { from, centre, turn, .. } => {
+                centre + (from - centre) * Complex::from_polar(1.0, turn * share)
+            }
+        };
+        let edges = plate.outline();
+        edges.iter().flat_map(|edge| (0..n).map(move |i| on(edge, i as f64 / n as f64))).collect()
+    }
+
+    #[test]
+    fn the_rim_to_the_edge_is_the_least_distance_to_a_dense_outline() {
+        let at = [[0.0, 0.0], [50.0, 0.0], [20.0, 30.0], [22.0, 11.0]];
+        let joints = [Joint::C, Joint::D, Joint::P, Joint::X2];
+        let holes = at.iter().zip(joints).map(|(at, joint)| Hole { joint, at: point(*at) }).collect();
+        let plate = Plate::new(Link::Coupler, holes, 7.0);
+        let bores = Bores::new(4.0).with_hole(Joint::D, Link::Coupler, 9.0);
+        let outline = sampled(&plate, 20_000);
+        let rims = plate.rims(&bores);
+        for (at, joint) in at.iter().zip(joints) {
+            let rim = rims.iter().find(|rim| rim.joints == joint.name() && rim.beside == Beside::Edge);
+            let hole = if joint == Joint::D { 9.0 } else { 4.0 };
+            let least = outline.iter().map(|p| (p - point(*at)).norm()).fold(f64::INFINITY, f64::min);
+            let width = rim.expect("every hole has one").width;
+            // Samples are at most 60/20000 apart on a line, which shifts the foot of the perpendicular by half of that.
+            assert!((width - (least - 0.5 * hole)).abs() < 1e-4, "{joint:?}: {width} {least}");
+        }
+        let between = |one: &str, other: &str| {
+            let beside = Beside::Hole(other.to_owned());
+            rims.iter().find(|rim| rim.joints == one && rim.beside == beside).map(|rim| rim.width)
+        };
+        assert_eq!(between("C", "D"), Some(50.0 - 2.0 - 4.5));
+        assert_eq!(between("C", "P"), Some(1300f64.sqrt() - 4.0));
+        // Three pairs of the first, two of the second, one of the third, and four edges.
+        assert_eq!(rims.len(), 10);
+    }
+}
