@@ -578,12 +578,10 @@ def check_shop_dxf(path):
                 for j, (there, _) in enumerate(holes):
                     same(abs(centres[i] - centres[j]), abs(at - there))
             contour = space.query(f"LWPOLYLINE[layer=='{link.upper()}']")[0]
+            points = list(contour.get_points("xyb"))
+            arcs = [(p, q) for p, q in zip(points, points[1:] + points[:1]) if p[2]]
             radii = {
-                round(math.hypot(u - x, v - y) / (2 * math.sin(2 * math.atan(bulge))), 6)
-                for (x, y, bulge), (u, v, _) in zip(
-                    points := list(contour.get_points("xyb")), points[1:] + points[:1]
-                )
-                if bulge
+                round(math.hypot(q[0] - p[0], q[1] - p[1]) / (2 * math.sin(2 * math.atan(p[2]))), 6) for p, q in arcs
             }
             assert radii == {round(shop.reach(linkage, link) + kerf / 2, 6)}, (path, link, radii)
     crank_deg = next(angle for angle in range(0, 360, 7) if linkage.reaches(angle))
