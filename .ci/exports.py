@@ -3,7 +3,8 @@
 The linkages: two shipped four-bars and four whose plates are awkward (P on the line C-D, P on C, coincident pivots,
 P right of C-D in inches); of either kind of slider a shipped one and two others (the rail slants, crank and slider are in
 line, P lies in the slot, the block is behind the crank pin); a shipped six-bar, and one with a third pivot, its crank a
-triangle. Each also with a kerf and other sizes. What is expected is computed here, from the JSON export alone; the slot
+triangle. Each also with a kerf and other sizes, and with shop data: holes of their own at A, C and P, a wide crank, a thick
+coupler. What is expected is computed here, from the JSON export alone; the slot
 from 36,000 positions of a turn.
 """
 
@@ -64,9 +65,10 @@ def several_loops():
     yield Path("tests/corpora/linkage/eight-bar.toml")
 
 
-def export(linkage, form, **settings):
+def export(linkage, form, shop=None, **settings):
     out = FOLDER / f"{linkage.stem}.{form}"
     arguments = [PROGRAM, "export", str(linkage), "--format", form, "--out", str(out)]
+    arguments += ["--shop", str(shop)] if shop else []
     for key, value in settings.items():
         arguments += ["--set", f"{key}={value}"]
     subprocess.run(arguments, check=True, capture_output=True)
@@ -486,9 +488,143 @@ def check_openscad(path):
         assert abs(mesh.volume - expected) < 0.02 * expected, (mesh.volume, expected)
 
 
+class Shop:
+    """Shop data in mm: diameters by joint and link, the radius and the thickness of each plate."""
+
+    hole, margin, thickness = 0.8, 1.1, 1.5
+    own = {("A", "crank"): 1.2, ("A", "ground"): 1.6, "C": 1.0, "P": 0.6}
+
+    def __init__(self):
+        self.path = FOLDER / "sizes.shop.toml"
+        self.path.write_text(
+            'format = 1\nunit = "cm"\n[shop]\nhole = 0.08\nmargin = 0.11\nthickness = 0.15\n'
+            "[shop.joint.A]\nhole_in = { crank = 0.12, ground = 0.16 }\n"
+            "[shop.joint.C]\nhole = 0.1\n[shop.joint.P]\nhole = 0.06\n"
+            "[shop.body.crank]\nwidth = 0.42\n[shop.body.coupler]\nthickness = 0.25\n"
+        )
+
+    def names(self, linkage, link):
+        """The joints of a plate's holes, in the order of the drawing."""
+        if isinstance(linkage, Chain):
+            return list(linkage.pivots) if link == "ground" else [name for name, _ in linkage.links[link][1]]
+        rail = isinstance(linkage, Slider) and linkage.rail
+        four_bar = isinstance(linkage, Linkage)
+        return {
+            "ground": "A" if rail else "AB",
+            "crank": "AC",
+            "coupler": "CDP" if four_bar or rail else "CP",
+            "follower": "BD",
+            "block": ("D" if rail else "B") + "EF",
+        }[link]
+
+    def holes(self, linkage, link):
+        """The centres of a plate's holes with their diameters; joints at one place have the largest of their own."""
+        places = self.places(linkage, link)
+        found = []
+        for name, at in zip(self.names(linkage, link), places):
+            here = next((hole for hole in found if abs(hole[0] - at) < 1e-6), None)
+            own = self.own.get((name, link), self.own.get(name))
+            if here is None:
+                found.append([at, own])
+            elif own is not None:
+                here[1] = max(here[1] or 0, own)
+        return [(at, own or self.hole) for at, own in found]
+
+    def places(self, linkage, link):
+        if isinstance(linkage, Linkage):
+            g = abs(linkage.B - linkage.A)
+            return {
+                "ground": [0, g], "crank": [0, linkage.a], "coupler": [0, linkage.b, linkage.P],
+                "follower": [0, linkage.c],
+            }[link]
+        return linkage.holes(self.hole, self.margin)[link]
+
+    def reach(self, linkage, link):
+        if link == "crank":
+            return 2.1
+        return max([self.hole] + [d for _, d in self.holes(linkage, link)]) / 2 + self.margin
+
+    def thick(self, link):
+        return 2.5 if link == "coupler" else self.thickness
+
+    def area(self, linkage, link):
+        """The area of a plate without its holes and its slot."""
+        taken = sum(math.pi * d**2 / 4 for _, d in self.holes(linkage, link))
+        slot = linkage.slot(link, self.hole, self.margin)
+        if slot:
+            taken += abs(slot[1] - slot[0]) * self.hole + math.pi * self.hole**2 / 4
+        return linkage.area(link, self.reach(linkage, link), 0) - taken
+
+    def volume(self, linkage):
+        return sum(self.area(linkage, link) * self.thick(link) for link in linkage.holes())
+
+
+def check_shop_dxf(path):
+    import ezdxf
+
+    linkage, shop = kind_of(path)(path), Shop()
+    for kerf in (0, 0.2):
+        document = ezdxf.readfile(export(path, "dxf-plates", shop=shop.path, kerf_mm=kerf))
+        auditor = document.audit()
+        assert not auditor.errors and not auditor.fixes, (path, auditor.errors, auditor.fixes)
+        space = document.modelspace()
+        for link in linkage.holes(shop.hole, shop.margin):
+            circles = list(space.query(f"CIRCLE[layer=='{link.upper()}']"))
+            holes = shop.holes(linkage, link)
+            assert len(circles) == len(holes), (path, link)
+            centres = [complex(c.dxf.center.x, c.dxf.center.y) for c in circles]
+            for i, (at, diameter) in enumerate(holes):
+                same(circles[i].dxf.radius, (diameter - kerf) / 2)
+                for j, (there, _) in enumerate(holes):
+                    same(abs(centres[i] - centres[j]), abs(at - there))
+            contour = space.query(f"LWPOLYLINE[layer=='{link.upper()}']")[0]
+            points = list(contour.get_points("xyb"))
+            arcs = [(p, q) for p, q in zip(points, points[1:] + points[:1]) if p[2]]
+            radii = {
+                round(math.hypot(q[0] - p[0], q[1] - p[1]) / (2 * math.sin(2 * math.atan(p[2]))), 6) for p, q in arcs
+            }
+            assert radii == {round(shop.reach(linkage, link) + kerf / 2, 6)}, (path, link, radii)
+    crank_deg = next(angle for angle in range(0, 360, 7) if linkage.reaches(angle))
+    document = ezdxf.readfile(export(path, "dxf", shop=shop.path, crank_deg=crank_deg))
+    radii = sorted(round(c.dxf.radius, 9) for c in document.modelspace().query("CIRCLE[layer=='JOINTS']"))
+    joints = [name for name in linkage.joints(crank_deg) if name != "D" or not hasattr(linkage, "h")]
+    # What stands at a joint: at A the smaller of its two holes.
+    drawn = {"A": 1.2, "C": 1.0, "P": 0.6}
+    assert radii == sorted(round(drawn.get(name, 0.8) / 2, 9) for name in joints), (path, radii)
+
+
+def check_shop_stl(path):
+    linkage, shop = kind_of(path)(path), Shop()
+    chord = 0.0005
+    for link, mesh in bodies(export(path, "stl", shop=shop.path, chord_mm=chord), linkage.holes()):
+        sound(mesh)
+        expected = shop.area(linkage, link) * shop.thick(link)
+        around = 2 * math.pi * shop.reach(linkage, link) + 8 * math.pi
+        assert abs(mesh.volume - expected) <= around * chord * shop.thick(link) + 1e-5 * expected, (path, link)
+        assert abs(mesh.bounds[:, 2] - [0, shop.thick(link)]).max() < 1e-6
+
+
+def check_shop_openscad(path):
+    import trimesh
+
+    linkage, shop = kind_of(path)(path), Shop()
+    script = export(path, "scad", shop=shop.path, chord_mm=0.01)
+    for view in ("plates", "assembly"):
+        out = FOLDER / f"{path.stem}-shop-{view}.stl"
+        done = subprocess.run(
+            ["openscad", "-o", str(out), "-D", f'view="{view}"', str(script)], capture_output=True, text=True
+        )
+        assert done.returncode == 0 and "WARNING" not in done.stderr, done.stderr
+        mesh, expected = trimesh.load_mesh(out), shop.volume(linkage)
+        assert mesh.is_watertight and mesh.body_count == len(linkage.holes()), (path, view, mesh.body_count)
+        assert abs(mesh.volume - expected) < 0.02 * expected, (path, view, mesh.volume, expected)
+
+
+SHOP = {"dxf": check_shop_dxf, "stl": check_shop_stl, "openscad": check_shop_openscad}[KIND]
 CHECK = {"dxf": check_dxf, "stl": check_stl, "openscad": check_openscad}[KIND]
 count = 0
 for path in (*linkages(), *sliders(), *several_loops()):
     CHECK(path)
+    SHOP(path)
     count += 1
-print(f"{KIND}: {count} linkages, no complaint")
+print(f"{KIND}: {count} linkages, each without and with shop data, no complaint")

@@ -8,6 +8,7 @@ use crate::files::linkage_file;
 use crate::files::linkage_file::{AnyLinkageFile, LinkageFile};
 use crate::mechanism::CrankLinkage;
 use crate::mechanism::loads::Loads;
+use crate::mechanism::plates::Shop;
 use crate::record::{Candidate, Pick, Record};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -167,6 +168,14 @@ pub fn read_loaded_linkage(argument: &Path) -> Result<(AnyLinkageFile, Option<Lo
         linkage: chosen.candidate.linkage.into(),
     };
     Ok((file, None))
+}
+
+/// Reads the shop data of an input's linkage file; a result has none.
+///
+/// # Errors
+/// [`NotRead`].
+pub fn read_shop(argument: &Path) -> Result<Option<Shop>, NotRead> {
+    if is_linkage_file(argument) { Ok(linkage_file::load_shop(argument)?) } else { Ok(None) }
 }
 
 /// Returns the file that an input is read from: the record in a folder, whatever candidate is named.

@@ -13,6 +13,7 @@
 //! | [`problem_file`] | problem files: TOML is read, and a `ProblemSpec` with every default filled in is returned |
 //! | [`problem_template`] | a commented problem file to start from: it can be run as it is, and is written for a user with a motor and a path |
 //! | [`schema`] | JSON Schemas of the files that are read and of the record that is written, generated from the types that read and write them |
+//! | [`shop_file`] | shop data: the table `[shop]` of a linkage file, and files of shop data alone, read by the same code |
 //! | [`svg_file`] | SVG drawings as targets: one shape of a drawing as target points, spaced evenly by arc length, y up |
 //! | [`sweep_file`] | sweep files: a problem and the keys of it that vary |
 //! | [`toml_text`] | a TOML text with its errors: reads a type from it and finds the place of a key |
@@ -27,6 +28,7 @@ pub mod points_file;
 pub mod problem_file;
 pub mod problem_template;
 pub mod schema;
+pub mod shop_file;
 pub mod svg_file;
 pub mod sweep_file;
 pub(crate) mod toml_text;

@@ -79,7 +79,7 @@ fn unstackable(problem: &Problem, candidate: &Candidate) -> Option<(usize, f64)>
     let linkage = candidate.linkage.multi_loop()?;
     let sweep = Sweep::of_candidate(problem, candidate)?;
     let hole = Build::usual_hole_of(&sweep, None)?;
-    let can = can_be_stacked(&sweep, Build::new(hole, hole))?;
+    let can = can_be_stacked(&sweep, &Build::new(hole, hole))?;
     (!can).then(|| (linkage.links().len(), hole))
 }
 

@@ -56,6 +56,7 @@
 //! | [`price`] | the costs of requirements and the relaxations that would help, in words |
 //! | [`scale`] | scales of charts: figures mapped to the range from 0 to 1, in proportion or by logarithms, with round values for ticks |
 //! | [`scene`] | the scene of a candidate's drawing: target points, the circuits used, and one position of the linkage |
+//! | [`shop`] | the parts of a linkage that is built with shop data, as text: pins, spacers, thicknesses and rims |
 //! | [`sheet`] | sheets: framed drawings with a title each, laid out on one page |
 //! | [`snap`] | the cost of snapping as text: before and after, and the next best linkages |
 //! | [`suite`] | a suite for the terminal and as Markdown: the same tables in two formats |
@@ -103,6 +104,7 @@ pub mod price;
 mod scale;
 pub(crate) mod scene;
 mod sheet;
+pub(crate) mod shop;
 pub mod snap;
 pub mod suite;
 pub mod svg;

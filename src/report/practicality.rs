@@ -2,6 +2,7 @@
 
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Column, Grid, Ink, plain};
+use super::shop::shop_text;
 use super::text::{COLUMNS, brief, capitalised, indented, significant, wrapped};
 use super::words::length_suffix;
 use crate::judge::practicality::clearance::PivotDistance;
@@ -9,7 +10,7 @@ use crate::judge::practicality::layers::{Layering, Passing, PinPlate, PlatePair,
 use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
 use crate::judge::practicality::sweep::Stretch;
 use crate::judge::practicality::{Build, Closest, Joint, Practicality};
-use crate::mechanism::plates::{Link, Parts};
+use crate::mechanism::plates::{Link, Parts, parts};
 use crate::mechanism::{LinkageKind, Unit};
 use crate::task::{Output, TaskKind};
 
@@ -42,6 +43,7 @@ pub fn practicality_text(
         }
         None => out.push_str(OPEN),
     }
+    out.push_str(&shop_text(practicality, unit, colour));
     out.push_str(&words.head("Least distances of joints over the motion"));
     match &practicality.distances {
         Some(distances) => out.push_str(&words.distances(distances, 2.0 * practicality.build.pin_radius)),
@@ -86,11 +88,6 @@ impl Words {
     /// Returns the construction of the links, and the motion over which they were examined.
     pub(super) fn made(&self, practicality: &Practicality) -> String {
         let build = &practicality.build;
-        let motor = build.motor.map_or(String::new(), |motor| {
-            let [shaft, boss] =
-                [motor.shaft_radius, motor.boss_radius].map(|radius| self.length(2.0 * radius));
-            format!(", at A {shaft} in the crank and {boss} in the ground")
-        });
         let of = |s: &Stretch| format!("{} to {}", degrees(s.from), degrees(s.to));
         let stretches: Vec<String> = practicality.sweep.stretches.iter().map(of).collect();
         let motion = match practicality.sweep.full_turn {
@@ -98,11 +95,24 @@ impl Words {
             false => format!("crank {}", stretches.join(", ")),
         };
         format!(
-            "Holes {}{motor}, plates {} around them; over {motion}.{}",
+            "Holes {}{}, plates {} around them; over {motion}.{}",
             self.length(2.0 * build.pin_radius),
+            self.own_holes(practicality),
             self.length(build.margin()),
             build.parts(&practicality.sweep).map_or(String::new(), |parts| self.guide(&parts, build))
         )
+    }
+
+    /// Returns the holes with diameters of their own, with a comma before each joint.
+    fn own_holes(&self, Practicality { build, sweep, .. }: &Practicality) -> String {
+        let linkage = &sweep.linkage;
+        let hole = |(link, hole): &(Link, f64)| format!("{} in {}", self.length(*hole), link.in_words());
+        let joint = |(joint, holes): (Joint, Vec<(Link, f64)>)| {
+            let holes: Vec<String> = holes.iter().map(hole).collect();
+            format!(", at {} {}", joint.name(), holes.join(" and "))
+        };
+        let listed = build.bores.listed(&parts::pins(linkage), parts::traced(linkage));
+        listed.into_iter().map(joint).collect()
     }
 
     /// Returns the description of the guide of a slider, with a blank before it; nothing of a four-bar.
@@ -121,11 +131,7 @@ impl Words {
                 " P lies in the slot, where no hole has room: what is mounted there bridges the slot.",
             );
         }
-        let diameter = |link: Link, joints: &str| match (link, joints.contains('A'), build.motor) {
-            (Link::Ground, true, Some(motor)) => 2.0 * motor.boss_radius,
-            _ => 2.0 * build.pin_radius,
-        };
-        if let Some((link, joints, _)) = parts.hole_in_slot(diameter) {
+        if let Some((link, joints, _)) = parts.hole_in_slot(|link, joints| build.bores.of(link, joints)) {
             let fault = format!(
                 " The slot runs into the hole at {joints} of the {}: choose a smaller hole and margin, or another linkage.",
                 link.name()

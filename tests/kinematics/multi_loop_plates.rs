@@ -121,8 +121,8 @@ fn distances_of_several_loops_are_bounded_and_near_the_least_of_a_fine_sweep() {
         nothing_crosses(&found);
         // As quickly as it can be decided, with the same holes.
         let build = Build::new(0.01 * linkage.longest(), 0.01 * linkage.longest());
-        let decided = can_be_stacked(&sweep, build).expect("it closes");
-        assert_eq!(decided, layering(&sweep, build).expect("it closes").stack.is_some());
+        let decided = can_be_stacked(&sweep, &build).expect("it closes");
+        assert_eq!(decided, layering(&sweep, &build).expect("it closes").stack.is_some());
     }
     assert!(stacked > 5, "{stacked} of 20 can be stacked");
 }

@@ -102,7 +102,7 @@ fn swept(seed: u64, count: u64) -> impl Iterator<Item = (FourBar, Sweep, Build)>
         let mut draws = stream(seed, i);
         let l = linkage(&mut draws, TYPES[(i % 5) as usize]);
         let radius = uniform(&mut draws, 0.02, 0.12) * l.longest_link();
-        let build = Build { plate_radius: radius, pin_radius: 0.4 * radius, motor: None };
+        let build = Build::of_radii(radius, 0.4 * radius);
         (l, Sweep::of_linkage(l).expect("it can be joined"), build)
     })
 }
@@ -111,7 +111,7 @@ fn swept(seed: u64, count: u64) -> impl Iterator<Item = (FourBar, Sweep, Build)>
 fn plates_that_share_a_plane_are_those_whose_outlines_never_meet_in_a_brute_force_sweep() {
     let (mut apart, mut met) = (0, 0);
     for (i, (l, sweep, build)) in swept(41, 250).enumerate() {
-        let pieces = Workpieces::new(&sweep, build).expect("it closes");
+        let pieces = Workpieces::new(&sweep, &build).expect("it closes");
         let plates = Plate::all(&l, build.plate_radius);
         let positions = positions(&sweep, 600);
         let step = 0.5 * build.plate_radius;
@@ -151,10 +151,10 @@ fn plates_that_share_a_plane_are_those_whose_outlines_never_meet_in_a_brute_forc
 #[test]
 fn no_distance_is_below_its_bound_and_each_is_near_the_least_of_a_fine_sweep() {
     for (i, (l, sweep, build)) in swept(42, 100).enumerate() {
-        let found = layering(&sweep, build).expect("it closes");
+        let found = layering(&sweep, &build).expect("it closes");
         let positions = positions(&sweep, 2000);
         let size = l.longest_link();
-        let pieces = Workpieces::new(&sweep, build).expect("it closes");
+        let pieces = Workpieces::new(&sweep, &build).expect("it closes");
         let least = |of: &dyn Fn(&Joints) -> f64| {
             positions.iter().map(|(_, _, j)| of(j)).fold(f64::INFINITY, f64::min)
         };
@@ -219,7 +219,7 @@ fn fewest_by_brute_force(l: &FourBar, sweep: &Sweep, build: Build) -> Option<usi
     let positions = positions(sweep, 2000);
     let least =
         |of: &dyn Fn(&Joints) -> f64| positions.iter().map(|(_, _, j)| of(j)).fold(f64::INFINITY, f64::min);
-    let pieces = Workpieces::new(sweep, build).expect("it closes");
+    let pieces = Workpieces::new(sweep, &build).expect("it closes");
     let plate_clear = |one: Link, other: Link| least(&|j| pieces.between_plates_at(one, other, j)) > 0.0;
     let free = [plate_clear(Link::Crank, Link::Follower), plate_clear(Link::Coupler, Link::Ground)];
     let ends: [[usize; 2]; 4] = [[0, 1], [0, 3], [1, 2], [2, 3]];
@@ -268,7 +268,7 @@ fn fewest_by_brute_force(l: &FourBar, sweep: &Sweep, build: Build) -> Option<usi
 fn the_fewest_layers_are_those_of_every_stacking_tried_by_brute_force() {
     let mut seen = std::collections::BTreeMap::new();
     for (i, (l, sweep, build)) in swept(44, 150).enumerate() {
-        let found = layering(&sweep, build).expect("it closes");
+        let found = layering(&sweep, &build).expect("it closes");
         let near =
             found.free_pairs.iter().map(|p| p.closest).chain(found.pins_plates.iter().map(|p| p.closest));
         if near
@@ -297,11 +297,11 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
         .expect("a linkage")
     };
     let stack = |l: &FourBar, sweep: &Sweep, build: Build| {
-        let found = layering(sweep, build).expect("closed");
+        let found = layering(sweep, &build).expect("closed");
         assert_eq!(sweep.linkage, (*l).into());
         found.stack
     };
-    let slim = Build { plate_radius: 6.0, pin_radius: 3.0, motor: None };
+    let slim = Build::of_radii(6.0, 3.0);
     // The coupler turns around its ground and never comes over it: crank below, follower above, both beside it.
     let l = drag(Complex::new(15.0, 10.0));
     let found = stack(&l, &Sweep::of_linkage(l).expect("joined"), slim).expect("there is one");
@@ -315,7 +315,7 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
     );
     assert_eq!(found.through, [(Joint::C, 1), (Joint::C, 2)]);
     // With plates so broad that this pin, never more than 30 from B, cannot pass, nothing works.
-    let broad = Build { plate_radius: 24.0, pin_radius: 8.0, motor: None };
+    let broad = Build::of_radii(24.0, 8.0);
     assert_eq!(stack(&l, &Sweep::of_linkage(l).expect("joined"), broad), None);
     // Over a short motion two layers may do.
     let l = drag(Complex::new(15.0, 10.0));
@@ -323,7 +323,7 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
     short.full_turn = false;
     short.stretches[0].from = 1.9;
     short.stretches[0].to = 2.2;
-    let slimmer = Build { plate_radius: 2.0, pin_radius: 1.0, motor: None };
+    let slimmer = Build::of_radii(2.0, 1.0);
     let found = stack(&l, &short, slimmer).expect("there is one");
     assert_eq!(found.layers.len(), 2, "{found:?}");
     let crank_rocker = FourBar::with_coupler_offset(
@@ -333,8 +333,8 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
         AssemblyMode::Plus,
     )
     .expect("a linkage");
-    let build = Build { plate_radius: 4.0, pin_radius: 2.0, motor: None };
-    let found = layering(&Sweep::of_linkage(crank_rocker).expect("joined"), build).expect("closed");
+    let build = Build::of_radii(4.0, 2.0);
+    let found = layering(&Sweep::of_linkage(crank_rocker).expect("joined"), &build).expect("closed");
     let stack = found.stack.expect("there is one");
     assert_eq!(stack.layers, [vec![Link::Ground], vec![Link::Crank, Link::Follower], vec![Link::Coupler]]);
     assert!(stack.through.is_empty());
@@ -502,13 +502,12 @@ fn a_motion_past_a_toggle_is_split_there() {
                 .to_vec(),
             ..sweep.clone()
         };
-        let build =
-            Build { plate_radius: 0.05 * l.longest_link(), pin_radius: 0.02 * l.longest_link(), motor: None };
-        let one = Workpieces::new(&sweep, build)
+        let build = Build::of_radii(0.05 * l.longest_link(), 0.02 * l.longest_link());
+        let one = Workpieces::new(&sweep, &build)
             .expect("closed")
             .between_plates(Link::Crank, Link::Follower)
             .expect("closed");
-        let all = Workpieces::new(&both, build)
+        let all = Workpieces::new(&both, &build)
             .expect("closed")
             .between_plates(Link::Crank, Link::Follower)
             .expect("closed");
@@ -528,8 +527,8 @@ fn a_motor_widens_the_plates_at_its_holes_and_stands_at_a() {
     let sweep = Sweep::of_linkage(l).expect("joined");
     let tolerance = 4.0 * MARGIN * l.longest_link();
     let pins = Build::new(4.0, 3.0);
-    let motor = pins.with_motor(Some(6.0), Some(20.0));
-    let [plain, wide] = [pins, motor].map(|build| layering(&sweep, build).expect("it closes"));
+    let motor = pins.clone().with_motor(Some(6.0), Some(20.0));
+    let [plain, wide] = [pins.clone(), motor].map(|build| layering(&sweep, &build).expect("it closes"));
     // Each distance less by what the two parts have become wider: 1 of the crank and its shaft, 8 of the ground.
     let wider = |link| match link {
         Link::Ground => 8.0,
@@ -546,8 +545,11 @@ fn a_motor_widens_the_plates_at_its_holes_and_stands_at_a() {
         assert!((one.closest.value - other.closest.value - more).abs() < tolerance, "{one:?} {other:?}");
     }
     // One of the two alone: the boss is as the shaft, and a smaller shaft narrows no plate.
-    let thin = pins.with_motor(Some(2.0), None);
-    assert_eq!(thin.motor.map(|motor| motor.boss_radius), Some(1.0));
-    assert_eq!((thin.radius_of(Link::Crank), thin.radius_at(Joint::A)), (5.0, 1.0));
-    assert_eq!(pins.with_motor(None, None), pins);
+    let thin = pins.clone().with_motor(Some(2.0), None);
+    assert_eq!(thin.bores.own(Link::Ground, Joint::A), Some(2.0));
+    assert_eq!(
+        (thin.radius_of(Link::Crank), thin.radius_at(&Pin::new(Joint::A, Link::Ground, Link::Crank))),
+        (5.0, 1.0)
+    );
+    assert_eq!(pins.clone().with_motor(None, None), pins);
 }

@@ -66,8 +66,8 @@ pub fn positions(sweep: &Sweep, n: u32) -> Vec<LoopJoints> {
 pub fn layered(label: usize, sweep: &Sweep) -> Layering {
     let hole = Build::usual_hole_of(sweep, None).expect("there is room");
     let build = Build::new(hole, hole);
-    let found = layering(sweep, build).expect("it closes");
-    let pieces = Workpieces::new(sweep, build).expect("it closes");
+    let found = layering(sweep, &build).expect("it closes");
+    let pieces = Workpieces::new(sweep, &build).expect("it closes");
     let positions = positions(sweep, 2000);
     let size = sweep.linkage.longest_link();
     let check = |what: &str, closest: &Closest, of: &dyn Fn(&LoopJoints) -> f64| {

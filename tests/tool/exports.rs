@@ -48,6 +48,7 @@ fn subject(linkage: FourBar, unit: Option<Unit>) -> Subject {
         frame_deg: None,
         carried: None,
         body_deg: Vec::new(),
+        shop: None,
     }
 }
 

@@ -36,6 +36,7 @@ mod report_page;
 mod rooms;
 mod seeds_document;
 mod shipped_problems;
+mod shop;
 #[cfg(feature = "studio")]
 mod studio;
 #[cfg(feature = "studio")]

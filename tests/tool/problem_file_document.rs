@@ -31,9 +31,16 @@ fn the_examples_of_the_linkage_file_are_linkage_files() {
     let page = reference(SchemaKind::Linkage);
     let blocks: Vec<&str> =
         page.split("```toml\n").skip(1).filter_map(|part| part.split("```").next()).collect();
-    assert_eq!(blocks.len(), 6);
-    let tables =
-        ["[linkage]", "[vector_loop]", "[slider_crank]", "[inverted_slider_crank]", "[chain]", "[loads]"];
+    assert_eq!(blocks.len(), 7);
+    let tables = [
+        "[linkage]",
+        "[vector_loop]",
+        "[slider_crank]",
+        "[inverted_slider_crank]",
+        "[chain]",
+        "[loads]",
+        "[shop]",
+    ];
     for table in tables {
         assert!(blocks.iter().any(|block| block.contains(table)), "an example of {table}");
     }

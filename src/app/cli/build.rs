@@ -7,6 +7,8 @@ use super::{Ended, refuse, terminal};
 use crate::files::diagnostic::escaped;
 pub use crate::judge::practicality::{Build, usual_tolerance};
 use crate::judge::practicality::{Practicality, Sweep};
+use crate::mechanism::plates::Shop;
+use crate::mechanism::plates::shop::Names;
 use crate::mechanism::{CrankLinkage, LinkageKind, Unit};
 use crate::record::Candidate;
 use crate::report::practicality::practicality_text;
@@ -18,14 +20,42 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     let given = Subject::of(options)?;
     let Some(sweep) = &given.sweep else { return Err(nothing(&given.title)) };
     let usual = || Build::usual_hole_of(sweep, given.unit);
-    let Some(hole) = options.hole.or_else(usual) else { return Err(no_room(&given)) };
-    let build =
-        Build::new(hole, options.margin.unwrap_or(hole)).with_motor(options.motor_hole, options.boss_hole);
+    let shop =
+        shop_in(given.unit, result::read_shop(&options.result, options.shop.as_ref(), &given.linkage)?)?;
+    let set = |own: Option<f64>, of: fn(&Shop) -> Option<f64>| own.or(shop.as_ref().and_then(of));
+    let hole = set(options.hole, |shop| shop.hole).or_else(usual);
+    let Some(hole) = hole else { return Err(no_room(&given)) };
+    let mut build = Build::new(hole, set(options.margin, |shop| shop.margin).unwrap_or(hole));
+    if let Some(shop) = shop {
+        let fault = shop.check(&Names::of(&given.linkage), Some(hole)).err();
+        if let Some((key, fault)) = fault {
+            return Err(refuse(format!("[shop] {}: {fault}: {}", key.join("."), fault.remedy())));
+        }
+        build = build.with_shop(&given.linkage, shop);
+    }
+    let build = build.with_motor(options.motor_hole, options.boss_hole);
     let Some(practicality) = given.practicality(build) else { return Err(nothing(&given.title)) };
     let tolerance = options.tolerance.unwrap_or_else(|| usual_tolerance(given.linkage, given.unit));
     terminal::answer(&format!("{}\n  {}\n\n", given.title, given.linkage));
     terminal::answer(&practicality_text(&practicality, given.unit, tolerance, terminal::colour()));
     Ok(Ended::Good)
+}
+
+/// Returns shop data in the unit of a linkage.
+fn shop_in(unit: Option<Unit>, shop: Option<Shop>) -> Result<Option<Shop>, Ended> {
+    let Some(shop) = shop else { return Ok(None) };
+    let factor = match (shop.unit, unit) {
+        (None, _) => 1.0,
+        (Some(own), Some(unit)) => own.factor_to(unit),
+        (Some(own), None) => {
+            return Err(refuse(format!(
+                "the shop data are in {}, and the linkage has no unit: write unit = \"{}\" into its file, or remove it from the shop file",
+                own.label(),
+                own.label()
+            )));
+        }
+    };
+    Ok(Some(shop.scaled(factor, unit)))
 }
 
 /// The linkage that is to be built.

@@ -6,7 +6,7 @@ use crate::files::diagnostic::{Diagnostic, counted, escaped};
 use crate::files::input_text;
 use crate::files::linkage_file;
 use crate::files::loads_file;
-use crate::files::{points_file, problem_file, sweep_file};
+use crate::files::{points_file, problem_file, shop_file, sweep_file};
 use crate::mechanism::Linkage;
 use crate::mechanism::loads::Loads;
 use ariadne::ReportKind;
@@ -62,11 +62,20 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
             }
         };
         let loads = loads.map_or_else(String::new, |loads| format!("; loads: {}", counted_loads(&loads)));
-        return Ok((summary + &loads, Vec::new()));
+        let shop = linkage_file::load_shop(path)?;
+        let shop = shop.map_or_else(String::new, |shop| {
+            format!("; shop: {}", counted_sizes([shop.joints.len(), shop.bodies.len()]))
+        });
+        return Ok((summary + &loads + &shop, Vec::new()));
     }
     if has_table(path, &["[loads", "[[loads"]) && !has_table(path, &["[task"]) {
         let loads = counted_loads(&loads_file::load_alone(path)?);
         let summary = format!("loads: {loads}; `analyze LINKAGE --loads FILE` checks them against a linkage");
+        return Ok((summary, Vec::new()));
+    }
+    if has_table(path, &["[shop"]) {
+        let sizes = counted_sizes(shop_file::check_alone(path)?);
+        let summary = format!("shop: {sizes}; `build RESULT --shop FILE` checks them against a linkage");
         return Ok((summary, Vec::new()));
     }
     if sweep_file::is_sweep(path) {
@@ -124,6 +133,12 @@ fn counted_loads(loads: &Loads) -> String {
     };
     let some: Vec<String> = sorts.iter().filter(|(count, _)| *count > 0).map(named).collect();
     if some.is_empty() { "none".to_owned() } else { some.join(", ") }
+}
+
+/// Returns the numbers of joints and of bodies with sizes of their own.
+fn counted_sizes([joints, bodies]: [usize; 2]) -> String {
+    let bodies = if bodies == 1 { "1 body".to_owned() } else { format!("{bodies} bodies") };
+    format!("sizes of {} and {bodies}", counted(joints, "joint"))
 }
 
 /// Returns whether a file has one of the tables that only a linkage file has. An unreadable file is left to the problem

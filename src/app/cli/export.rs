@@ -15,9 +15,13 @@ pub fn run(options: &Export) -> Result<Ended, Ended> {
         let name = options.format.name();
         return Err(refuse(format!("{name} is not text: say where it goes with --out FILE.{name}")));
     }
+    let shop = |linkage| result::read_shop(&options.result, options.shop.as_ref(), linkage);
     let subject = match result::read(&options.result)? {
-        Given::Linkage(file) => Subject::of_linkage(&file),
-        Given::Run(run) => Subject::of_candidate(&run.record, run.one()?.candidate),
+        Given::Linkage(file) => Subject { shop: shop(&file.linkage)?, ..Subject::of_linkage(&file) },
+        Given::Run(run) => {
+            let candidate = run.one()?.candidate;
+            Subject::of_candidate_for_shop(&run.record, candidate, shop(&candidate.linkage)?)
+        }
     };
     let exported = export(&subject, options.format, &settings).map_err(|e| refused(options, e))?;
     for note in &exported.notes {
@@ -28,7 +32,7 @@ pub fn run(options: &Export) -> Result<Ended, Ended> {
         return Ok(Ended::Good);
     };
     let file = (path, options.format.kind(), &exported.bytes);
-    Output::new([&options.result], options.force).write(&[file])?;
+    Output::new([&options.result].into_iter().chain(&options.shop), options.force).write(&[file])?;
     let (title, standing) = (subject.title(), &subject.standing);
     terminal::answer(&format!("Wrote {}: {title}, {standing}\n", terminal::shown(path)));
     Ok(Ended::Good)

@@ -6,10 +6,13 @@ use super::{Ended, refuse, refuse_at, refuse_path, terminal};
 use crate::app::inputs;
 pub use crate::app::inputs::{Given, NoCandidate, NotRead, Run, Which, file_of};
 use crate::files::linkage_file::AnyLinkageFile;
+use crate::files::shop_file;
 use crate::judge::verify::{Mismatch, verify};
+use crate::mechanism::CrankLinkage;
 use crate::mechanism::loads::Loads;
+use crate::mechanism::plates::Shop;
 use crate::record::Record;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 impl From<NoCandidate> for Ended {
     fn from(none: NoCandidate) -> Ended {
@@ -65,6 +68,21 @@ pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, Ended> {
 /// As [`read_linkage`].
 pub fn read_loaded_linkage(argument: &Path) -> Result<(AnyLinkageFile, Option<Loads>), Ended> {
     Ok(inputs::read_loaded_linkage(argument)?)
+}
+
+/// Reads the shop data of a linkage: of `own`, a file of shop data, else of its linkage file.
+///
+/// # Errors
+/// [`Ended::Refused`]; the fault has been reported.
+pub fn read_shop(
+    argument: &Path,
+    own: Option<&PathBuf>,
+    linkage: &CrankLinkage,
+) -> Result<Option<Shop>, Ended> {
+    match own {
+        Some(file) => Ok(Some(shop_file::load(file, linkage).map_err(refuse_at)?)),
+        None => Ok(inputs::read_shop(argument)?),
+    }
 }
 
 /// Says that loads of a linkage file are not carried over to what the command writes.

@@ -11,12 +11,14 @@ use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::input_text;
 use crate::files::loads_file::{RawLoads, of_linkage_file};
 use crate::files::name;
+use crate::files::shop_file::{self, RawShop};
 use crate::files::toml_text::TomlText;
 use crate::files::toml_values::{Count, Number, OnlyTable, XY};
 use crate::mechanism::loads::Loads;
+use crate::mechanism::plates::Shop;
 use crate::mechanism::{
     AssemblyMode, CouplerSide, CrankLinkage, FourBar, InvertedSliderCrank, Linkage, LinkageError,
-    MAX_MAGNITUDE, MultiLoop, NaturalCoordinates, SliderCrank, Unit, VectorLoop,
+    MAX_MAGNITUDE, MultiLoop, NaturalCoordinates, NoMultiLoop, SliderCrank, Unit, VectorLoop,
 };
 use crate::record::Candidate;
 use crate::task::Sense;
@@ -65,6 +67,8 @@ pub(crate) struct RawLinkageFile {
     chain: Option<OnlyTable<chain::RawChain>>,
     /// Masses, forces, couples and springs, with which `analyze` finds torques and joint forces; `unit` is required then.
     loads: Option<OnlyTable<RawLoads>>,
+    /// Sizes of holes, pins, plates and rims, with which `build` and `export` make plates.
+    shop: Option<OnlyTable<RawShop>>,
 }
 
 /// Pivots A and B, lengths and two signs.
@@ -212,17 +216,7 @@ pub fn parse_crank_linkage(
     text: &str,
 ) -> Result<LinkageFile<CrankLinkage>, Box<Diagnostic>> {
     let AnyLinkageFile { name, unit, linkage } = parse_any(file_name, text)?;
-    let found = match &linkage {
-        Linkage::FourBar(linkage) => Ok(CrankLinkage::FourBar(*linkage)),
-        Linkage::SliderCrank(linkage) => Ok(CrankLinkage::SliderCrank(*linkage)),
-        Linkage::InvertedSliderCrank(linkage) => Ok(CrankLinkage::InvertedSliderCrank(*linkage)),
-        Linkage::MultiLoop(linkage) => Ok(CrankLinkage::MultiLoop(**linkage)),
-        Linkage::Chain(chain) => SliderCrank::from_chain(chain)
-            .map(CrankLinkage::SliderCrank)
-            .or_else(|| InvertedSliderCrank::from_chain(chain).map(CrankLinkage::InvertedSliderCrank))
-            .map_or_else(|| MultiLoop::from_chain(chain).map(CrankLinkage::MultiLoop), Ok),
-    };
-    match found {
+    match crank_linkage(&linkage) {
         Ok(linkage) => Ok(LinkageFile { name, unit, linkage }),
         Err(error) => {
             let message = format!(
@@ -231,6 +225,20 @@ pub fn parse_crank_linkage(
             let help = "give a linkage file with [linkage], [vector_loop], [slider_crank] or [inverted_slider_crank]";
             refuse_kind((file_name, text), &linkage, message, help)
         }
+    }
+}
+
+/// Returns a linkage as one of a kind that synthesis finds.
+fn crank_linkage(linkage: &Linkage) -> Result<CrankLinkage, NoMultiLoop> {
+    match linkage {
+        Linkage::FourBar(linkage) => Ok(CrankLinkage::FourBar(*linkage)),
+        Linkage::SliderCrank(linkage) => Ok(CrankLinkage::SliderCrank(*linkage)),
+        Linkage::InvertedSliderCrank(linkage) => Ok(CrankLinkage::InvertedSliderCrank(*linkage)),
+        Linkage::MultiLoop(linkage) => Ok(CrankLinkage::MultiLoop(**linkage)),
+        Linkage::Chain(chain) => SliderCrank::from_chain(chain)
+            .map(CrankLinkage::SliderCrank)
+            .or_else(|| InvertedSliderCrank::from_chain(chain).map(CrankLinkage::InvertedSliderCrank))
+            .map_or_else(|| MultiLoop::from_chain(chain).map(CrankLinkage::MultiLoop), Ok),
     }
 }
 
@@ -256,6 +264,23 @@ pub fn load_loaded(path: &Path) -> Result<(AnyLinkageFile, Option<Loads>), Box<D
 /// # Errors
 /// As [`load_loaded`].
 pub fn parse_loaded(file_name: &str, text: &str) -> Result<(AnyLinkageFile, Option<Loads>), Box<Diagnostic>> {
+    parse_tables(file_name, text).map(|(file, loads, _)| (file, loads))
+}
+
+/// Reads the shop data of a linkage file; `None` without a table `[shop]`.
+///
+/// # Errors
+/// As [`load_loaded`].
+pub fn load_shop(path: &Path) -> Result<Option<Shop>, Box<Diagnostic>> {
+    let text = input_text::read(path)?;
+    parse_tables(&path.display().to_string(), &text).map(|(.., shop)| shop)
+}
+
+/// A linkage with its loads and its shop data.
+type Tables = (AnyLinkageFile, Option<Loads>, Option<Shop>);
+
+/// Reads all tables of a text.
+fn parse_tables(file_name: &str, text: &str) -> Result<Tables, Box<Diagnostic>> {
     let toml = TomlText { file: file_name, text: input_text::without_mark(text) };
     if toml.text.trim().is_empty() {
         return toml.refuse_file("the file is empty", KINDS);
@@ -294,7 +319,11 @@ pub fn parse_loaded(file_name: &str, text: &str) -> Result<(AnyLinkageFile, Opti
     let unit = raw.unit;
     let loads =
         raw.loads.map(|OnlyTable(loads)| of_linkage_file(&toml, loads, unit, &linkage)).transpose()?;
-    Ok((LinkageFile { name, unit, linkage }, loads))
+    let read = |OnlyTable(shop)| {
+        shop_file::of_linkage_file(&toml, shop, unit, crank_linkage(&linkage).ok().as_ref())
+    };
+    let shop = raw.shop.map(read).transpose()?;
+    Ok((LinkageFile { name, unit, linkage }, loads, shop))
 }
 
 fn natural_linkage(raw: RawLinkage) -> Result<FourBar, LinkageError> {

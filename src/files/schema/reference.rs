@@ -180,6 +180,47 @@ rate_N_m_per_rad = 0.5
 free_angle_deg = 90
 ```
 
+Shop data, in the table `[shop]` below the linkage or in a file of their own (`format`, `unit` and `[shop]`; `build` and `export` with
+`--shop FILE`), are the sizes of holes, pins, plates and rims. Lengths are in the file's unit, without one in that of the linkage, and
+are those of the finished parts: `scale` of `export` leaves them. Joints and bodies are named as in cut lists, also those of a six-bar
+that a `[chain]` describes. A hole of `hole_in` goes before that of `hole`; what is set with `--set` or an option of `build` goes before
+both. The pin of a joint is as thick as its smaller hole: the follower below runs on a bearing of 10 mm around a pin of 4 mm.
+
+```toml
+format = 1
+name = "with-bearings"
+unit = "mm"
+
+[linkage]
+A = [0.0, 0.0]
+B = [80.0, 20.0]
+a = 30.0
+b = 90.0
+c = 80.0
+d = 60.0
+e = 60.0
+t1 = 1
+t2 = 1
+
+[shop]
+hole = 4
+margin = 5
+thickness = 3
+
+[shop.joint.A]
+hole_in = { crank = 6, ground = 22 }
+
+[shop.joint.B]
+hole_in = { follower = 10 }
+rim = 4
+
+[shop.body.ground]
+thickness = 6
+
+[shop.body.coupler]
+width = 16
+```
+
 A file that linkwright wrote says so in its first line, "written by linkwright", whatever is edited below it: such a
 file may be replaced by a command that writes a linkage file under the same name. Without that line, and where it is the
 command's own input, it is replaced with `--force` alone.

@@ -3,27 +3,21 @@
 use super::closest::{Closest, Until, closest};
 use super::sweep::{Position, Positions, Reach, Sweep};
 pub use crate::mechanism::plates::Joint;
-use crate::mechanism::plates::{Guide, Link, Parts, Plate, Sizes, parts};
+use crate::mechanism::plates::shop::{Names, THICKNESS_SHARE};
+use crate::mechanism::plates::{Bores, Guide, Link, Parts, Pin, Plate, Shop, Sizes, parts};
 use crate::mechanism::{CrankLinkage, FourBar, LoopJoints, Unit, length};
 
 /// Radii of the plates and pins of a linkage.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Build {
-    /// Distance that a plate reaches beyond the hull of its hole centres.
+    /// Distance that a plate without a width of its own reaches beyond the hull of its hole centres.
     pub plate_radius: f64,
-    /// The radius of the pins, half a hole.
+    /// The radius of the pins without a diameter of their own, half a hole.
     pub pin_radius: f64,
-    /// The radii of a motor's shaft and boss at A, if they are not those of a pin.
-    pub motor: Option<Motor>,
-}
-
-/// Radii of the holes for a motor at A.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motor {
-    /// Of the shaft, in the crank.
-    pub shaft_radius: f64,
-    /// Of the boss around it, in the ground.
-    pub boss_radius: f64,
+    /// The diameters of holes and pins.
+    pub bores: Bores,
+    /// The sizes that are given for this linkage, in the unit of its lengths.
+    pub shop: Option<Shop>,
 }
 
 /// Default diameter of a hole, in millimetres, if the unit is known.
@@ -36,17 +30,26 @@ const HOLE_BESIDE: f64 = 1.0 / 3.0;
 impl Build {
     /// Returns the radii for holes of diameter `hole` with material of width `margin` around them.
     pub fn new(hole: f64, margin: f64) -> Self {
-        Build { plate_radius: margin + 0.5 * hole, pin_radius: 0.5 * hole, motor: None }
+        let (plate_radius, pin_radius) = (margin + 0.5 * hole, 0.5 * hole);
+        Build { plate_radius, pin_radius, bores: Bores::new(hole), shop: None }
+    }
+
+    /// Returns these radii of plates and pins.
+    pub fn of_radii(plate_radius: f64, pin_radius: f64) -> Self {
+        Build { plate_radius, pin_radius, bores: Bores::new(2.0 * pin_radius), shop: None }
+    }
+
+    /// Returns the same with the sizes that are given for a linkage, in the unit of its lengths.
+    #[must_use]
+    pub fn with_shop(self, linkage: &CrankLinkage, shop: Shop) -> Self {
+        Build { bores: shop.bores(&Names::of(linkage), self.bores.usual), shop: Some(shop), ..self }
     }
 
     /// Returns the same with holes for a motor at A: of diameter `shaft` in the crank and `boss` in the ground, each by
     /// default as the one before it.
     #[must_use]
     pub fn with_motor(self, shaft: Option<f64>, boss: Option<f64>) -> Self {
-        let shaft_radius = shaft.map_or(self.pin_radius, |shaft| 0.5 * shaft);
-        let boss_radius = boss.map_or(shaft_radius, |boss| 0.5 * boss);
-        let motor = Motor { shaft_radius, boss_radius };
-        Build { motor: (shaft.is_some() || boss.is_some()).then_some(motor), ..self }
+        Build { bores: self.bores.with_motor(shaft, boss), ..self }
     }
 
     /// Returns the material around a hole.
@@ -54,22 +57,24 @@ impl Build {
         self.plate_radius - self.pin_radius
     }
 
-    /// Returns the radius of a plate: wider than [`Build::plate_radius`] around a motor's hole that is wider than a pin's.
+    /// Returns the radius of a plate: half its own width, else wider than [`Build::plate_radius`] around a hole that is wider than
+    /// a pin's.
     pub fn radius_of(&self, link: Link) -> f64 {
-        let hole = match (link, self.motor) {
-            (Link::Ground, Some(motor)) => motor.boss_radius,
-            (Link::Crank, Some(motor)) => motor.shaft_radius,
-            _ => self.pin_radius,
-        };
-        self.plate_radius + (hole - self.pin_radius).max(0.0)
+        let own = self.shop.as_ref().and_then(|shop| shop.width_of(link));
+        let usual = || self.plate_radius + (0.5 * self.bores.largest(link) - self.pin_radius).max(0.0);
+        own.map_or_else(usual, |width| 0.5 * width)
     }
 
-    /// Returns the radius of what stands at a joint: a pin, or the motor's shaft.
-    pub fn radius_at(&self, pin: Joint) -> f64 {
-        match (pin, self.motor) {
-            (Joint::A, Some(motor)) => motor.shaft_radius,
-            _ => self.pin_radius,
-        }
+    /// Returns the thickness of a plate: its own, that of all plates, or a part of the usual hole.
+    pub fn thickness_of(&self, link: Link) -> f64 {
+        let usual = THICKNESS_SHARE * self.bores.usual;
+        let of = |shop: &Shop| shop.thickness_of(link, shop.thickness.unwrap_or(usual));
+        self.shop.as_ref().map_or(usual, of)
+    }
+
+    /// Returns the radius of a pin, or of the motor's shaft.
+    pub fn radius_at(&self, pin: &Pin) -> f64 {
+        0.5 * self.bores.pin(pin)
     }
 
     /// Returns the parts of a linkage of these sizes for its motion; `None` if a slider's loop is open in the motion.
@@ -129,18 +134,20 @@ fn plate_moves(plate: &Plate, reach: &Reach) -> f64 {
 #[derive(Debug)]
 pub struct Workpieces<'a> {
     positions: Positions<'a>,
-    build: Build,
     parts: Parts,
     plates: Vec<Plate>,
+    /// The pins with their radii.
+    pins: Vec<(Pin, f64)>,
     until: Until,
 }
 
 impl<'a> Workpieces<'a> {
     /// Builds the plates of a linkage in motion; `None` if a slider's loop is open in the motion.
-    pub fn new(sweep: &'a Sweep, build: Build) -> Option<Self> {
+    pub fn new(sweep: &'a Sweep, build: &Build) -> Option<Self> {
         let parts = build.parts(sweep)?;
         let plates = parts.plates(|link| build.radius_of(link));
-        Some(Workpieces { positions: Positions::of(sweep), build, parts, plates, until: Until::Proved })
+        let pins = parts.pins().into_iter().map(|pin| (pin, build.radius_at(&pin))).collect();
+        Some(Workpieces { positions: Positions::of(sweep), parts, plates, pins, until: Until::Proved })
     }
 
     /// Returns the same, whose least distances are proved only until it is decided whether they are above zero.
@@ -152,6 +159,17 @@ impl<'a> Workpieces<'a> {
     /// Returns the parts.
     pub fn parts(&self) -> &Parts {
         &self.parts
+    }
+
+    /// Returns whether a pin always lies in the slot of a link and is no thicker than that.
+    pub fn stands_in_slot(&self, pin: Joint, link: Link) -> bool {
+        let width = self.parts.guide().map_or(0.0, |guide| guide.width);
+        self.parts.stands_in_slot(pin, link) && 2.0 * self.radius_at(pin) <= width
+    }
+
+    /// Returns the radius of the pin of a joint, 0 of a joint without one.
+    fn radius_at(&self, joint: Joint) -> f64 {
+        self.pins.iter().find(|(pin, _)| pin.joint == joint).map_or(0.0, |(_, radius)| *radius)
     }
 
     fn plate(&self, link: Link) -> &Plate {
@@ -179,7 +197,7 @@ impl<'a> Workpieces<'a> {
 
     fn pin_and_plate_in(&self, pin: Joint, plate: Link, position: &Position) -> f64 {
         let to = self.parts.joint_in(pin, position);
-        self.plate(plate).distance(&self.parts.frame(plate, position), to) - self.build.radius_at(pin)
+        self.plate(plate).distance(&self.parts.frame(plate, position), to) - self.radius_at(pin)
     }
 
     /// Computes the least distance between two plates over the motion, below zero if they overlap. `None` if the loop
@@ -202,7 +220,7 @@ impl<'a> Workpieces<'a> {
         let apart = |at: &Position| length(self.parts.joint_in(one, at) - self.parts.joint_in(other, at));
         let guide = self.parts.guide();
         let moves = |reach: &Reach| joint_moves(one, reach, guide) + joint_moves(other, reach, guide);
-        let radii = self.build.radius_at(one) + self.build.radius_at(other);
+        let radii = self.radius_at(one) + self.radius_at(other);
         closest(&self.positions, |at| apart(at) - radii, moves, self.until)
     }
 }

@@ -98,7 +98,7 @@ pub fn clear(closest: &Closest) -> bool {
 
 /// Computes the stacking of the fewest layers without crossings over the whole motion; `None` if the loop is open in
 /// the motion.
-pub fn layering(sweep: &Sweep, build: Build) -> Option<Layering> {
+pub fn layering(sweep: &Sweep, build: &Build) -> Option<Layering> {
     let mut layering = Layering::of(&Workpieces::new(sweep, build)?)?;
     layering.stack = layering.best();
     Some(layering)
@@ -107,7 +107,7 @@ pub fn layering(sweep: &Sweep, build: Build) -> Option<Layering> {
 /// Returns whether there is a stacking without crossings over the whole motion, in a fraction of the time of [`layering`]: of the
 /// distances it is only decided whether parts are clear, and parts nearer than [`MARGIN`](super::closest::MARGIN) of the longest
 /// link count as crossing. `None` if the loop is open in the motion.
-pub fn can_be_stacked(sweep: &Sweep, build: Build) -> Option<bool> {
+pub fn can_be_stacked(sweep: &Sweep, build: &Build) -> Option<bool> {
     let layering = Layering::of(&Workpieces::new(sweep, build)?.decided())?;
     // A layer without a plate is left out.
     let count = layering.links.len();
@@ -129,7 +129,7 @@ impl Layering {
         let mut pins = Vec::new();
         for (i, Pin { joint: pin, joins }) in all_pins.iter().copied().enumerate() {
             let strangers =
-                links.iter().filter(|link| !joins.contains(link) && !parts.stands_in_slot(pin, **link));
+                links.iter().filter(|link| !joins.contains(link) && !pieces.stands_in_slot(pin, **link));
             for plate in strangers.copied() {
                 pins_plates.push(PinPlate { pin, plate, closest: pieces.pin_to_plate(pin, plate)? });
             }

@@ -8,6 +8,8 @@
 //! | plates that share a plane, and the order in which plates stack | [`layers::layering`] |
 //! | least distances between pivots and pins | [`clearance::pivot_distances`] |
 //! | shift of the path for an error of each dimension | [`sensitivity::sensitivity`] |
+//! | rims that are thinner than holes need | [`rims::needed_rims`] |
+//! | lengths of pins and spacers | [`pins::pin_lengths`] |
 //! | all of these, for a candidate or a linkage by itself | [`Practicality`] |
 //!
 //! Distances over a motion are proved least values ([`closest`]), not the least of samples.
@@ -16,6 +18,8 @@ pub mod clearance;
 pub mod closest;
 mod dimensions;
 pub mod layers;
+pub mod pins;
+pub mod rims;
 pub mod sensitivity;
 pub mod sweep;
 

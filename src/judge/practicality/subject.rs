@@ -57,7 +57,7 @@ impl Practicality {
     }
 
     fn of(sweep: Sweep, build: Build, sensitivity: Option<Sensitivity>, at_points: bool) -> Self {
-        let (layering, distances) = (layering(&sweep, build), pivot_distances(&sweep));
+        let (layering, distances) = (layering(&sweep, &build), pivot_distances(&sweep));
         Practicality {
             sweep,
             build,

@@ -54,6 +54,15 @@ impl Joint {
         all.into_iter().find(|joint| joint.name() == name)
     }
 
+    /// Returns the joints of names that are written one after the other: `CX2`.
+    pub fn all_named(letters: &str) -> Vec<Joint> {
+        // Every name is a capital letter, or one with a digit behind it.
+        let starts: Vec<usize> =
+            letters.char_indices().filter(|(_, c)| c.is_alphabetic()).map(|(i, _)| i).collect();
+        let ends = starts.iter().skip(1).copied().chain([letters.len()]);
+        starts.iter().zip(ends).filter_map(|(start, end)| Joint::named(letters.get(*start..end)?)).collect()
+    }
+
     /// Returns the name of the joint.
     pub fn name(self) -> &'static str {
         Joint::NAMES[self as usize]

@@ -38,9 +38,11 @@
 //! | `displacement` | bounds of the motion of six-bars and eight-bars |
 //! | `guide` | the block of a slider and the slot that it runs in |
 //! | `hull`, `outline`, `separation` | geometry of one plate, and of two |
+//! | `bores`, `rims`, `shop` | diameters of holes and pins; the material around holes; the sizes that a linkage is built with |
 //! | `moments` | area, centroid and second moment of an outline |
 //! | `joint`, `kind`, `motion`, `parts` | joints and pins; what a kind gives; intervals of the motion; all parts of a linkage |
 
+mod bores;
 mod displacement;
 mod four_bar;
 mod guide;
@@ -53,13 +55,16 @@ mod motion;
 mod multi_loop;
 mod outline;
 pub(crate) mod parts;
+mod rims;
 mod separation;
+pub mod shop;
 mod slider_crank;
 #[cfg(test)]
 mod slider_tests;
 #[cfg(test)]
 mod tests;
 
+pub use bores::Bores;
 pub use guide::{Guide, Sizes};
 pub(crate) use hull::hull as convex_hull;
 pub use joint::{Joint, Pin};
@@ -67,6 +72,8 @@ pub use kind::Slot;
 pub use motion::{Reach, Stretch};
 pub use outline::Edge;
 pub use parts::{Parts, Position};
+pub use rims::{Beside, Rim};
+pub use shop::Shop;
 
 use crate::mechanism::{Complex, CrankLinkage, FourBar, LoopJoints, bounding_box};
 use std::f64::consts::PI;

@@ -159,6 +159,30 @@ pub(crate) fn links(linkage: &CrankLinkage) -> Vec<Link> {
     plated(linkage).links()
 }
 
+/// Returns the pins of a linkage.
+pub(crate) fn pins(linkage: &CrankLinkage) -> Vec<Pin> {
+    plated(linkage).pins()
+}
+
+/// Returns the link that carries P.
+pub(crate) fn traced(linkage: &CrankLinkage) -> Link {
+    plated(linkage).traced()
+}
+
+/// Returns the joints with the links in whose plates they have holes: a guide pin in its block, P in the link that carries it.
+pub(crate) fn drilled(linkage: &CrankLinkage) -> Vec<(Joint, Vec<Link>)> {
+    let kind = plated(linkage);
+    let guided = |joint: Joint| matches!(joint, Joint::E | Joint::F);
+    let of = |pin: Pin| {
+        let links = pin.joins.into_iter().filter(|link| !guided(pin.joint) || *link == Link::Block);
+        (pin.joint, links.collect())
+    };
+    let mut holes: Vec<(Joint, Vec<Link>)> = kind.pins().into_iter().map(of).collect();
+    holes.sort_by_key(|(joint, _)| *joint);
+    holes.push((Joint::P, vec![kind.traced()]));
+    holes
+}
+
 /// Computes how far joints move within a stretch, from the position in its middle; `None` if the loop is open there.
 pub(crate) fn reach(linkage: &CrankLinkage, stretch: &Stretch) -> Option<(LoopJoints, Reach)> {
     let at = linkage.joints_with(stretch.middle(), stretch.assembly)?;

@@ -1,6 +1,7 @@
 //! The cut list: the sizes of the plates and the places of their holes.
 
 use super::model::{Model, distances};
+use super::stock;
 use crate::mechanism::Complex;
 use crate::mechanism::plates::{Link, Placement, Plate, Slot};
 use crate::report::csv::written;
@@ -67,17 +68,19 @@ fn pins(model: &Model<'_>, plates: &[(Plate, Placement)]) -> (usize, bool) {
 /// Returns the list as text.
 pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let mut out = format!("Cut list: {}\n{}\n\n", model.heading(), crate::files::generator::mark());
-    let thickness = number(model.thickness);
+    let (thickness, for_shop) = (number(model.thickness), model.holes.shop.is_some());
     out.push_str(&format!(
         "material {thickness} mm thick, holes {} mm in diameter{}, {} mm from a hole's edge to the plate's\n\n",
         number(model.holes.pins),
-        model.motor_holes(),
+        model.holes.listed(),
         number(model.margin)
     ));
-    let line = |plate: &str, length: &str, width: &str, area: &str, holes: &str| {
-        format!("{plate:<10}{length:>12}{width:>12}{area:>14}   {holes}\n")
+    let line = |plate: &str, [length, width, thick, area]: [&str; 4], holes: &str| {
+        // Without shop data all plates are as thick.
+        let thick = if for_shop { format!("{thick:>12}") } else { String::new() };
+        format!("{plate:<10}{length:>12}{width:>12}{thick}{area:>14}   {holes}\n")
     };
-    out.push_str(&line("plate", "length mm", "width mm", "area mm2", "holes, mm apart"));
+    out.push_str(&line("plate", ["length mm", "width mm", "thick mm", "area mm2"], "holes, mm apart"));
     for (plate, _) in plates {
         let [length, width] = size(plate);
         let pairs = distances(&marked(plate));
@@ -86,18 +89,36 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
         if holes.is_empty() {
             holes = plate.distinct_holes().into_iter().map(|(name, _)| format!("{name} alone")).collect();
         }
-        let [length, width, area] = [length, width, area(model, plate)].map(number);
-        out.push_str(&line(plate.link.name(), &length, &width, &area, &holes.join(", ")));
+        let sizes = [length, width, model.thickness_of(plate.link), area(model, plate)].map(number);
+        out.push_str(&line(plate.link.name(), sizes.each_ref().map(|size| &**size), &holes.join(", ")));
     }
+    if for_shop {
+        out.push_str(&stock::text(model));
+    } else {
+        out.push_str(&counted_pins(model, plates));
+    }
+    if let Some((plate, slot)) = plates.iter().find_map(|(plate, _)| Some((plate, plate.slot?))) {
+        out.push_str(&format!(
+            "slot in the {}: {} mm wide, {} mm from S to T, the centres of its round ends; the block's pins E and F run in it\n",
+            plate.link.name(),
+            number(model.holes.pins),
+            number(slot.length())
+        ));
+    }
+    out
+}
+
+/// Returns the line about the pins of plates that are all as thick.
+fn counted_pins(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let (pins, tracer) = pins(model, plates);
-    let motor = model.holes.are_for_a_motor();
-    out.push_str(&format!(
+    let motor = model.holes.bores.differ();
+    let mut out = format!(
         "\n{} plates, {} pins of {} mm through at least two plates ({} mm)",
         plates.len(),
         pins - usize::from(motor),
         number(model.holes.pins),
         number(2.0 * model.thickness)
-    ));
+    );
     if motor {
         out.push_str(", a shaft at A");
     }
@@ -107,14 +128,6 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
         (false, true) => ", a pen or a pin at P\n",
         (false, false) => "; P is on a pin\n",
     });
-    if let Some((plate, slot)) = plates.iter().find_map(|(plate, _)| Some((plate, plate.slot?))) {
-        out.push_str(&format!(
-            "slot in the {}: {} mm wide, {} mm from S to T, the centres of its round ends; the block's pins E and F run in it\n",
-            plate.link.name(),
-            number(model.holes.pins),
-            number(slot.length())
-        ));
-    }
     out
 }
 
@@ -127,15 +140,16 @@ pub(super) fn csv(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
             pairs = holes.iter().map(|(name, _)| (name.clone(), name.clone(), 0.0)).collect();
         }
         let [length, width] = size(plate);
-        let area = area(model, plate);
+        let (area, thickness) = (area(model, plate), model.thickness_of(plate.link));
         let count = holes.len();
         pairs.into_iter().map(move |(from, to, apart)| {
             let mut row = vec![plate.link.name().to_owned(), count.to_string(), cell(&from), cell(&to)];
             let of = |joints: &str| model.holes.of(plate.link, joints);
-            let numbers = [apart, model.holes.pins, length, width, model.thickness, area, of(&from), of(&to)];
+            let numbers = [apart, model.holes.pins, length, width, thickness, area, of(&from), of(&to)];
             row.extend(numbers.into_iter().map(exact));
             row
         })
     });
-    written(COLUMNS, rows)
+    let stock = if model.holes.shop.is_some() { stock::rows(model) } else { Vec::new() };
+    written(COLUMNS, rows.chain(stock))
 }

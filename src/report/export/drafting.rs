@@ -33,8 +33,8 @@ pub(super) fn sketch(model: &Model<'_>, at: &LoopJoints) -> String {
     for curve in &model.curves {
         drawing.polyline("CURVE", &straight(curve), true);
     }
-    for (_, at) in &skeleton.joints {
-        drawing.circle("JOINTS", *at, 0.5 * model.holes.pins);
+    for (name, at) in &skeleton.joints {
+        drawing.circle("JOINTS", *at, 0.5 * model.holes.drawn(name));
     }
     for at in &model.target {
         drawing.point("TARGET", *at);
@@ -103,7 +103,7 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String
         format!(
             "holes {} mm{}, margin {} mm, paths moved outward by half a kerf of {} mm",
             exact(model.holes.pins),
-            model.motor_holes(),
+            model.holes.listed(),
             exact(model.margin),
             exact(model.kerf)
         ),

@@ -1,65 +1,101 @@
-//! Diameters of the holes of plates: one for all pins, and those at A of the crank and of the ground for a motor.
+//! Sizes of the holes and the plates around them: one diameter for all holes, and those of single holes from the settings and from
+//! shop data.
 
 use super::model::hole_distances;
 use super::settings::{Refusal, Settings};
-use crate::mechanism::plates::{Link, Parts};
+use crate::mechanism::CrankLinkage;
+use crate::mechanism::plates::shop::Names;
+use crate::mechanism::plates::{Bores, Joint, Link, Parts, Pin, Shop, parts};
 use crate::report::text::{brief, exact};
 
-/// The diameters of the holes, in mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The diameters of the holes and the widths of the plates, in mm.
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Holes {
-    /// Of every hole without a size of its own.
+    /// The diameter of every hole without a size of its own.
     pub(super) pins: f64,
-    /// Of the crank's hole at A: the shaft of a motor.
-    pub(super) motor: f64,
-    /// Of the ground's hole at A: the boss of a motor.
-    pub(super) boss: f64,
+    /// The diameters of all holes and pins.
+    pub(super) bores: Bores,
+    /// The shop data, in mm.
+    pub(super) shop: Option<Shop>,
+    joints: Vec<Pin>,
+    traced: Link,
 }
 
 impl Holes {
-    /// Returns the diameters of the settings, `pins` for all that have none.
-    pub(super) fn new(pins: f64, settings: &Settings) -> Self {
-        let motor = settings.motor_hole_mm.unwrap_or(pins);
-        Holes { pins, motor, boss: settings.boss_hole_mm.unwrap_or(motor) }
+    /// Returns the diameters of the settings and of shop data in mm, `pins` for all holes that have none.
+    pub(super) fn new(
+        pins: f64,
+        linkage: &CrankLinkage,
+        (settings, shop): (&Settings, Option<Shop>),
+    ) -> Self {
+        let own =
+            shop.as_ref().map_or_else(|| Bores::new(pins), |shop| shop.bores(&Names::of(linkage), pins));
+        let bores = own.with_motor(settings.motor_hole_mm, settings.boss_hole_mm);
+        Holes { pins, bores, shop, joints: parts::pins(linkage), traced: parts::traced(linkage) }
     }
 
-    /// Returns whether the holes at A have sizes of their own.
-    pub(super) fn are_for_a_motor(&self) -> bool {
-        self.motor != self.pins || self.boss != self.pins
+    /// Returns the holes with diameters of their own, if they differ from the others, with a comma before each joint.
+    pub(super) fn listed(&self) -> String {
+        if !self.bores.differ() {
+            return String::new();
+        }
+        let hole = |(link, hole): &(Link, f64)| format!("{} mm in {}", exact(*hole), link.in_words());
+        let joint = |(joint, holes): (Joint, Vec<(Link, f64)>)| {
+            let holes: Vec<String> = holes.iter().map(hole).collect();
+            format!(", at {} {}", joint.name(), holes.join(" and "))
+        };
+        self.bores.listed(&self.joints, self.traced).into_iter().map(joint).collect()
     }
 
-    /// Returns the setting that a hole of a plate has its size from; `joints` are the letters of the hole.
-    fn key(link: Link, joints: &str) -> &'static str {
-        match link {
-            Link::Crank if joints.contains('A') => "motor_hole_mm",
-            Link::Ground if joints.contains('A') => "boss_hole_mm",
-            _ => "hole_mm",
+    /// Returns the diameter of what stands at a joint in drawings: the usual one, or with shop data its pin, or the hole at P.
+    pub(super) fn drawn(&self, name: &str) -> f64 {
+        let Some(joint) = self.shop.as_ref().and_then(|_| Joint::named(name)) else { return self.pins };
+        match self.joints.iter().find(|pin| pin.joint == joint) {
+            Some(pin) => self.bores.pin(pin),
+            None => self.bores.of(self.traced, name),
+        }
+    }
+
+    /// Returns the setting that a hole of a plate has its size from; `letters` are the names of its joints.
+    fn key(&self, link: Link, letters: &str, settings: &Settings) -> String {
+        let joints = Joint::all_named(letters);
+        let is_at_a = joints.contains(&Joint::A);
+        let motor = settings.motor_hole_mm.is_some() || settings.boss_hole_mm.is_some();
+        let own = joints.iter().find(|joint| self.bores.own(link, **joint).is_some());
+        match (link, own) {
+            (Link::Crank, _) if is_at_a && (motor || own.is_none()) => "motor_hole_mm".to_owned(),
+            (Link::Ground, _) if is_at_a && (motor || own.is_none()) => "boss_hole_mm".to_owned(),
+            (_, Some(joint)) => format!("the hole of [shop.joint.{}]", joint.name()),
+            _ => "hole_mm".to_owned(),
         }
     }
 
     /// Returns the diameter of a hole of a plate; `joints` are the letters of the hole.
     pub(super) fn of(&self, link: Link, joints: &str) -> f64 {
-        match Holes::key(link, joints) {
-            "motor_hole_mm" => self.motor,
-            "boss_hole_mm" => self.boss,
-            _ => self.pins,
-        }
+        self.bores.of(link, joints)
     }
 
     /// Returns the smallest diameter, with its setting.
-    pub(super) fn smallest(&self) -> (&'static str, f64) {
-        let all = [("hole_mm", self.pins), ("motor_hole_mm", self.motor), ("boss_hole_mm", self.boss)];
-        all.into_iter().fold(all[0], |least, one| if one.1 < least.1 { one } else { least })
+    pub(super) fn smallest(&self, settings: &Settings) -> (String, f64) {
+        let own = self.bores.smallest_own();
+        own.map_or_else(
+            || ("hole_mm".to_owned(), self.pins),
+            |(joint, link, hole)| (self.key(link, joint.name(), settings), hole),
+        )
     }
 
-    /// Returns the distance from the hull of a link's holes to the edge of its plate: `margin` around the largest.
+    /// Returns the distance from the hull of a link's holes to the edge of its plate: half its own width, or `margin` around its
+    /// largest hole.
     pub(super) fn radius(&self, link: Link, margin: f64) -> f64 {
-        let largest = match link {
-            Link::Ground => self.boss.max(self.pins),
-            Link::Crank => self.motor.max(self.pins),
-            _ => self.pins,
-        };
-        0.5 * largest + margin
+        let own = self.shop.as_ref().and_then(|shop| shop.width_of(link));
+        own.map_or_else(|| 0.5 * self.bores.largest(link) + margin, |width| 0.5 * width)
+    }
+
+    /// Checks that no hole is wider than its plate, and no pin thicker than its hole.
+    pub(super) fn check_shop(&self, linkage: &CrankLinkage) -> Result<(), Refusal> {
+        let Some(shop) = &self.shop else { return Ok(()) };
+        let found = shop.check(&Names::of(linkage), Some(self.pins));
+        found.map_err(|(_, fault)| Refusal::new(format!("{fault} (mm)"), fault.remedy()))
     }
 
     /// Checks that no two holes of a plate run into each other, nor the slot into a hole.
@@ -90,8 +126,8 @@ impl Holes {
             ));
         }
         // What the larger one may be beside the other; where that is nothing, the other is too large already.
-        let (key, beside) =
-            if one > other { (Holes::key(link, &from), other) } else { (Holes::key(link, &to), one) };
+        let (joints, beside) = if one > other { (&from, other) } else { (&to, one) };
+        let key = &*self.key(link, joints, settings);
         let most = 2.0 * apart - beside;
         let help = match most > 0.0 {
             true => format!("choose {key} below {}, or a larger scale", brief(most, 3)),

@@ -33,7 +33,7 @@ impl Mesh {
     }
 
     fn with_phase(model: &Model<'_>, plate: &Plate, place: &Placement, phase: f64) -> Option<Self> {
-        let Model { thickness, chord, .. } = *model;
+        let (thickness, chord) = (model.thickness_of(plate.link), model.chord);
         let mut rings = vec![polygon(&plate.outline(), plate.radius, chord)];
         for (k, (joints, centre)) in plate.distinct_holes().into_iter().enumerate() {
             let radius = 0.5 * model.holes.of(plate.link, &joints);

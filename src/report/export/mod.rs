@@ -11,7 +11,7 @@
 //! | `dxf`, `dxf-plates` | AutoCAD 2000 drawings, `$INSUNITS` millimetres | `dxf`, `drafting`, `marks`, `skeleton` |
 //! | `stl` | the plates as closed bodies, laid out side by side | `mesh`, `stl` |
 //! | `scad` | an OpenSCAD script with every size as a parameter | `openscad` |
-//! | `cut-list`, `cut-list-csv` | hole distances and sizes of each plate | `cut_list` |
+//! | `cut-list`, `cut-list-csv` | hole distances and sizes of each plate, with shop data pins and spacers | `cut_list`, `stock` |
 //! | `csv`, `toml`, `json` | the cycle and the linkage, in the file's own unit | |
 //! | `png`, `gif` | a picture, the linkage in motion (feature `images`) | `images` |
 
@@ -29,6 +29,7 @@ mod openscad;
 mod settings;
 mod skeleton;
 mod stl;
+mod stock;
 mod subject;
 mod svg;
 

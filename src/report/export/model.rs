@@ -3,10 +3,16 @@
 use super::holes::Holes;
 use super::settings::{Refusal, Settings};
 use super::{Format, Subject};
-use crate::mechanism::plates::{Joint, Link, Parts, Placement, Plate, Sizes, parts};
+use crate::judge::practicality::layers::{Stack, layering};
+use crate::judge::practicality::pins::{PinLength, pin_lengths};
+use crate::judge::practicality::rims::{NeededRim, needed_rims};
+use crate::judge::practicality::{Build, Sweep};
+use crate::mechanism::plates::shop::THICKNESS_SHARE;
+use crate::mechanism::plates::{Joint, Link, Parts, Placement, Plate, Shop, Sizes, parts};
 use crate::mechanism::{AssemblyMode, Complex, CrankLinkage, FourBar, LinkageError, LoopJoints, Unit, point};
 use crate::report::body;
 use crate::report::scene::{Bounds, circuits_through, middle_position};
+use crate::report::shop::thin_rim;
 use crate::report::text::{brief, exact};
 
 /// The allowed longest link in millimetres: from a hundredth of a millimetre to ten kilometres.
@@ -89,6 +95,10 @@ impl<'a> Model<'a> {
             ));
         }
 
+        let shop = subject.shop.as_ref().map(|shop| {
+            let factor = shop.unit.or(unit).map_or(1.0, |unit| unit.factor_to(Unit::Mm));
+            shop.scaled(factor, Some(Unit::Mm))
+        });
         let largest = if unit.is_some() { HOLE_MM } else { HOLE_SHARE * longest };
         let usual_hole = usual_hole(&linkage, subject, largest);
         let mut default = |key: &'static str, set: Option<f64>, value: f64| {
@@ -98,14 +108,16 @@ impl<'a> Model<'a> {
                 value
             })
         };
-        let hole = default("hole_mm", settings.hole_mm, usual_hole);
-        let margin = default("margin_mm", settings.margin_mm, hole);
+        let given = |of: fn(&Shop) -> Option<f64>| shop.as_ref().and_then(of);
+        let hole = default("hole_mm", settings.hole_mm.or(given(|shop| shop.hole)), usual_hole);
+        let margin = default("margin_mm", settings.margin_mm.or(given(|shop| shop.margin)), hole);
         let kerf = settings.kerf_mm.unwrap_or(0.0);
-        let thickness = default("thickness_mm", settings.thickness_mm, 0.75 * hole);
+        let thickness = settings.thickness_mm.or(given(|shop| shop.thickness));
+        let thickness = default("thickness_mm", thickness, THICKNESS_SHARE * hole);
         let gap = default("gap_mm", settings.gap_mm, margin) + kerf;
         let chord = default("chord_mm", settings.chord_mm, CHORD_SHARE * hole);
-        let holes = Holes::new(hole, settings);
-        let (smallest, least) = holes.smallest();
+        let holes = Holes::new(hole, &linkage, (settings, shop));
+        let (smallest, least) = holes.smallest(settings);
         if kerf >= least {
             return Err(Refusal::about(
                 settings,
@@ -162,6 +174,7 @@ impl<'a> Model<'a> {
         }
         if format.has_plates() {
             notes.extend(self.slot_note());
+            notes.extend(self.thin_rims());
         }
         if format == Format::DxfPlates && self.settings.marks.is_none() {
             notes.push("the layer MARK holds names to engrave; marks=no leaves it out".to_owned());
@@ -185,6 +198,16 @@ impl<'a> Model<'a> {
             note.push_str("; P lies in the slot and has no hole");
         }
         Some(note)
+    }
+
+    /// Returns the warnings of thin rims, with shop data alone.
+    fn thin_rims(&self) -> Vec<String> {
+        let (Some(shop), Some(parts)) = (&self.holes.shop, &self.parts) else { return Vec::new() };
+        let plates = parts.plates(|link| self.holes.radius(link, self.margin));
+        let rims = needed_rims(&plates, &self.holes.bores, shop).into_iter();
+        rims.filter(NeededRim::is_thin)
+            .map(|rim| thin_rim(&rim, |mm| format!("{} mm", brief(mm, 4))))
+            .collect()
     }
 
     /// Returns a heading such as `my-path, candidate 1 of 5, lengths in mm, 1 in the file is 25.4 mm`; foreign text in
@@ -246,8 +269,9 @@ impl<'a> Model<'a> {
     /// below another, on a sheet in as many columns as that takes. The tool's paths begin at the sheet's corner.
     pub(super) fn plates(&self) -> Result<Vec<(Plate, Placement)>, Refusal> {
         let parts = self.parts()?;
-        self.holes.check(parts, self.settings)?;
         let plates = parts.plates(|link| self.holes.radius(link, self.margin));
+        self.holes.check_shop(&self.linkage)?;
+        self.holes.check(parts, self.settings)?;
         let sizes: Vec<Complex> = plates.iter().map(|plate| plate.bounds()[1] - plate.bounds()[0]).collect();
         let corners = match self.settings.sheet_mm {
             None => in_columns(&sizes, self.gap, f64::INFINITY),
@@ -309,13 +333,22 @@ impl<'a> Model<'a> {
         self.holes.pins - self.kerf
     }
 
-    /// Returns the sizes of the holes at A, if they are for a motor, with a comma before them.
-    pub(super) fn motor_holes(&self) -> String {
-        let Holes { motor, boss, .. } = self.holes;
-        if !self.holes.are_for_a_motor() {
-            return String::new();
-        }
-        format!(", at A {} mm in the crank and {} mm in the ground", exact(motor), exact(boss))
+    /// Returns the thickness of a plate.
+    pub(super) fn thickness_of(&self, link: Link) -> f64 {
+        self.holes.shop.as_ref().map_or(self.thickness, |shop| shop.thickness_of(link, self.thickness))
+    }
+
+    /// Returns the layers of the plates with the lengths of the pins in them; `None` without a stacking in which nothing crosses.
+    pub(super) fn stacked(&self) -> Option<(Stack, Vec<PinLength>)> {
+        let parts = self.parts.as_ref()?;
+        let build = Build::new(self.holes.pins, self.margin);
+        let build = Build { bores: self.holes.bores.clone(), shop: self.holes.shop.clone(), ..build };
+        let stretches = self.subject.motion.clone();
+        // A motion without stretches has no positions to look at.
+        let sweep = Sweep { linkage: self.linkage, full_turn: false, stretches };
+        let layering = (!sweep.stretches.is_empty()).then(|| layering(&sweep, &build)).flatten()?;
+        let pins = pin_lengths(&layering, parts, &self.holes.bores, |link| self.thickness_of(link))?;
+        Some((layering.stack?, pins))
     }
 }
 

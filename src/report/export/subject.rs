@@ -3,7 +3,7 @@
 use crate::files::linkage_file::{Carried, LinkageFile};
 use crate::files::name;
 use crate::judge::practicality::Sweep;
-use crate::mechanism::plates::Stretch;
+use crate::mechanism::plates::{Shop, Stretch};
 use crate::mechanism::{AssemblyMode, CrankLinkage, Unit};
 use crate::record::{Candidate, Record};
 use crate::report::scene::positions_at;
@@ -28,7 +28,8 @@ pub struct Subject {
     pub closed: bool,
     /// The crank angle (radians) and assembly at each target point.
     pub positions: Vec<(f64, AssemblyMode)>,
-    /// The motion for which the slot of a slider is made; not needed of a four-bar.
+    /// The motion for which the slot of a slider is made, and in which plates must not cross; not needed of a four-bar without shop
+    /// data.
     pub motion: Vec<Stretch>,
     /// In a motion: the angle from C -> D to the body's x axis, degrees.
     pub frame_deg: Option<f64>,
@@ -36,6 +37,8 @@ pub struct Subject {
     pub carried: Option<Carried>,
     /// In a motion: the angle of the body at each target, degrees; `None` where only the place counts.
     pub body_deg: Vec<Option<f64>>,
+    /// The sizes of single holes, pins and plates; lengths without a unit are in that of the linkage.
+    pub shop: Option<Shop>,
 }
 
 impl Subject {
@@ -52,7 +55,11 @@ impl Subject {
             target: path.points.clone(),
             closed: path.closed,
             positions,
-            motion: motion_of(record, candidate),
+            motion: if candidate.linkage.four_bar().is_some() {
+                Vec::new()
+            } else {
+                motion_of(record, candidate)
+            },
             frame_deg: candidate.frame_deg,
             carried: Carried::of(candidate),
             body_deg: path
@@ -60,6 +67,16 @@ impl Subject {
                 .as_ref()
                 .filter(|_| !path.is_function())
                 .map_or(Vec::new(), |body| body.angle_deg.clone()),
+            shop: None,
+        }
+    }
+
+    /// Returns the subject of a candidate of a record that is built with shop data.
+    pub fn of_candidate_for_shop(record: &Record, candidate: &Candidate, shop: Option<Shop>) -> Self {
+        let subject = Subject::of_candidate(record, candidate);
+        match shop {
+            Some(_) => Subject { motion: motion_of(record, candidate), shop, ..subject },
+            None => subject,
         }
     }
 
@@ -78,6 +95,7 @@ impl Subject {
             frame_deg: None,
             carried: None,
             body_deg: Vec::new(),
+            shop: None,
         }
     }
 
@@ -93,11 +111,8 @@ impl Subject {
     }
 }
 
-/// Returns the motion of a candidate with a slider, as it is examined for building; nothing of a four-bar.
+/// Returns the motion of a candidate, as it is examined for building.
 fn motion_of(record: &Record, candidate: &Candidate) -> Vec<Stretch> {
-    if candidate.linkage.four_bar().is_some() {
-        return Vec::new();
-    }
     let problem = Problem::new(record.problem.resolved.clone()).ok();
     let sweep = problem.and_then(|problem| Sweep::of_candidate(&problem, candidate));
     sweep.map_or(Vec::new(), |sweep| sweep.stretches)

@@ -163,7 +163,7 @@ pub(super) fn drawing(model: &Model<'_>, at: &LoopJoints) -> String {
     page.push("</g>");
     page.push(&group("joints", &line(LINKS, &thin)));
     for (name, at) in &skeleton.joints {
-        page.circle(name, *at, 0.5 * model.holes.pins);
+        page.circle(name, *at, 0.5 * model.holes.drawn(name));
     }
     page.push("</g>");
     if !model.target.is_empty() {

@@ -32,10 +32,10 @@ P = [Px, Py];
 "#;
 
 /// The plates and the assembly; equations 10 to 18 of Romero (2016) give D and P.
-const REST: &str = r#"module ground() plate([[0, 0, boss_hole], [g, 0, hole]], r_ground);
-module crank() plate([[0, 0, motor_hole], [a, 0, hole]], r_crank);
-module coupler() plate([[0, 0, hole], [b, 0, hole], [P.x, P.y, hole]], r);
-module follower() plate([[0, 0, hole], [c, 0, hole]], r);
+const REST: &str = r#"module ground() plate([[0, 0, @hole:ground:A@], [g, 0, @hole:ground:B@]], @r:ground@@t:ground@);
+module crank() plate([[0, 0, @hole:crank:A@], [a, 0, @hole:crank:C@]], @r:crank@@t:crank@);
+module coupler() plate([[0, 0, @hole:coupler:C@], [b, 0, @hole:coupler:D@], [P.x, P.y, @hole:coupler:P@]], @r:coupler@@t:coupler@);
+module follower() plate([[0, 0, @hole:follower:B@], [c, 0, @hole:follower:D@]], @r:follower@@t:follower@);
 
 // Where the joints are: C on the crank, D = C + V (u + i t1 sqrt k) with V = B - C.
 C = A + a * [cos(crank_deg), sin(crank_deg)];
@@ -49,7 +49,7 @@ D = C + [V.x * u - V.y * q, V.y * u + V.x * q];
 
 // Puts a plate's first hole on one joint and its x axis towards another, in a layer.
 module place(from, to, layer)
-    translate([from.x, from.y, layer * (thickness + washer)])
+    translate([from.x, from.y, layer * @pitch@])
         rotate(atan2(to.y - from.y, to.x - from.x)) children();
 
 if (view == "assembly") {
@@ -59,10 +59,10 @@ if (view == "assembly") {
     color("seagreen") place(B, D, 3) follower();
 } else {
     above = 2 * r_ground + 2 * r_crank + 2 * gap;
-    bottom = r - min(0, P.y);
+    bottom = @r:coupler@ - min(0, P.y);
     translate([r_ground, r_ground, 0]) ground();
     translate([r_crank, 2 * r_ground + gap + r_crank, 0]) crank();
-    translate([r - min(0, P.x), above + bottom, 0]) coupler();
-    translate([r, above + bottom + max(0, P.y) + 2 * r + gap, 0]) follower();
+    translate([@r:coupler@ - min(0, P.x), above + bottom, 0]) coupler();
+    translate([@r:follower@, above + bottom + max(0, P.y) + @both@ + gap, 0]) follower();
 }
 "#;

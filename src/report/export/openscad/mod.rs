@@ -2,6 +2,7 @@
 
 mod four_bar;
 mod multi_loop;
+mod sizes;
 mod sliders;
 
 use super::model::Model;
@@ -9,6 +10,7 @@ use super::settings::Refusal;
 use crate::files::generator::mark;
 use crate::mechanism::CrankLinkage;
 use crate::report::text::exact;
+use sizes::Names;
 
 /// A parameter: name, value, and what it is.
 type Parameter = (&'static str, f64, &'static str);
@@ -19,14 +21,15 @@ struct Script {
     t1: &'static str,
     /// The parameters of the linkage.
     numbers: Vec<Parameter>,
-    /// The part that draws.
+    /// The part that draws, with marks for the names of sizes ([`sizes`]).
     body: String,
 }
 
 /// Returns the script. Foreign text is in a comment on one line, cleaned of everything that would end the comment.
 pub(super) fn script(model: &Model<'_>) -> Result<String, Refusal> {
     // Only a linkage whose plates can be made has a script.
-    model.plates()?;
+    let plates = model.plates()?.into_iter().map(|(plate, _)| plate).collect();
+    let names = Names::of(model, plates);
     let ((angle, assembly), _) = model.start()?;
     let (crank_deg, assembly) = match model.settings.crank_deg {
         Some(angle) => {
@@ -57,17 +60,8 @@ pub(super) fn script(model: &Model<'_>) -> Result<String, Refusal> {
         let about = if about.is_empty() { String::new() } else { format!(" // {about}") };
         out.push_str(&format!("{name} = {};{about}\n", exact(value + 0.0)));
     }
-    let own_size = |set: Option<f64>, usual: &str| set.map_or(usual.to_owned(), exact);
-    let (motor, boss) = (model.settings.motor_hole_mm, model.settings.boss_hole_mm);
-    out.push_str(&format!(
-        "motor_hole = {}; // of the crank at A, for a motor's shaft\n",
-        own_size(motor, "hole")
-    ));
-    out.push_str(&format!(
-        "boss_hole = {}; // of the ground at A, for its boss\n",
-        own_size(boss, "motor_hole")
-    ));
-    out.push_str(&own.body);
+    out.push_str(&names.parameters());
+    out.push_str(&names.fill(&own.body));
     Ok(out)
 }
 
@@ -77,7 +71,7 @@ function sides(radius) = max(24, min(720, ceil(180 / max(0.25, acos(max(0, 1 - c
 
 // A plate: the hull of its holes grown by a radius r, holes taken out. A hole is x, y and its diameter.
 function radius(largest) = max(hole, largest) / 2 + margin;
-module plate(holes, r) {
+module plate(holes, r@t@) {
     difference() {
         linear_extrude(thickness) hull()
             for (h = holes) translate([h.x, h.y]) circle(r = r, $fn = sides(r));
@@ -85,7 +79,4 @@ module plate(holes, r) {
             cylinder(d = h.z, h = 3 * thickness, $fn = sides(h.z / 2));
     }
 }
-r = radius(hole);
-r_ground = radius(boss_hole);
-r_crank = radius(motor_hole);
-"#;
+@radii@"#;

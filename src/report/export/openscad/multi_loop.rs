@@ -92,17 +92,12 @@ fn plates(linkage: &MultiLoop, parts: &Parts) -> String {
                 (_, 1) if body != CRANK => format!("[{}, 0]", OF_DYAD[body / 2 - 2][4 + body % 2]),
                 _ => format!("[{joint}x, {joint}y]"),
             };
-            let diameter = match (body, *joint) {
-                (GROUND, "A") => "boss_hole",
-                (CRANK, "A") => "motor_hole",
-                _ => "hole",
-            };
-            format!("hole_at({place}, {diameter})")
+            format!("hole_at({place}, @hole:{}:{joint}@)", Link::OF_BODIES[body].name())
         };
         let holes: Vec<String> = joints.iter().enumerate().map(hole).collect();
-        let (name, radius) = (Link::OF_BODIES[body].name(), ["r_ground", "r_crank", "r"][body.min(2)]);
+        let name = Link::OF_BODIES[body].name();
         out.push_str(&format!("{name}_holes = [{}];\n", holes.join(", ")));
-        out.push_str(&format!("module {name}() plate({name}_holes, {radius});\n"));
+        out.push_str(&format!("module {name}() plate({name}_holes, @r:{name}@@t:{name}@);\n"));
     }
     out.push_str("\nmodule assembly() {\n");
     for (layer, link) in parts.links().into_iter().enumerate() {
@@ -117,9 +112,9 @@ fn plates(linkage: &MultiLoop, parts: &Parts) -> String {
     out.push_str("}\nmodule layout() {\n");
     let mut below = String::from("0");
     for link in parts.links() {
-        let (name, radius) = (link.name(), ["r_ground", "r_crank", "r"][link.place().min(2)]);
-        out.push_str(&format!("    laid({name}_holes, {radius}, {below}) {name}();\n"));
-        below.push_str(&format!(" + height({name}_holes, {radius})"));
+        let name = link.name();
+        out.push_str(&format!("    laid({name}_holes, @r:{name}@, {below}) {name}();\n"));
+        below.push_str(&format!(" + height({name}_holes, @r:{name}@)"));
     }
     out.push_str("}\n");
     out
@@ -161,7 +156,7 @@ function height(points, r) = high(points).y - low(points).y + 2 * r + gap;
 module laid(points, r, y) translate([r - low(points).x, y + r - low(points).y, 0]) children();
 // Puts a plate's origin on that of a frame and its x axis along its direction, in a layer.
 module place(frame, layer)
-    translate([frame[0].x, frame[0].y, layer * (thickness + washer)])
+    translate([frame[0].x, frame[0].y, layer * @pitch@])
         rotate(atan2(frame[1].y, frame[1].x)) children();
 
 if (view == "assembly") {

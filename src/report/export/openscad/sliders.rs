@@ -82,14 +82,14 @@ function along(v) = v * s;
 function across(v) = s.x * v.y - s.y * v.x;
 
 // Holes are x, y and their diameter; a slot is its two ends.
-ground_holes = [[0, 0, boss_hole]];
+ground_holes = [[0, 0, @hole:ground:A@]];
 ground_slot = [for (x = [travel_from - guide / 2 - end, travel_to + guide / 2 + end])
     [along(Q - A) + x, across(Q - A)]];
-crank_holes = [[0, 0, motor_hole], [a, 0, hole]];
-coupler_holes = [[0, 0, hole], [b, 0, hole], [Px, Py, hole]];
+crank_holes = [[0, 0, @hole:crank:A@], [a, 0, @hole:crank:C@]];
+coupler_holes = [[0, 0, @hole:coupler:C@], [b, 0, @hole:coupler:D@], [Px, Py, @hole:coupler:P@]];
 coupler_slot = [];
 coupler_corners = [];
-block_holes = [[0, 0, hole], [-guide / 2, 0, hole], [guide / 2, 0, hole]];
+block_holes = [[0, 0, @hole:block:D@], [-guide / 2, 0, @hole:block:E@], [guide / 2, 0, @hole:block:F@]];
 "#;
 
 /// The points of the plates of an inverted slider-crank.
@@ -99,25 +99,22 @@ B = [Bx, By];
 g = norm(B - A);
 
 // Holes are x, y and their diameter; a slot is its two ends.
-ground_holes = [[0, 0, boss_hole], [g, 0, hole]];
+ground_holes = [[0, 0, @hole:ground:A@], [g, 0, @hole:ground:B@]];
 ground_slot = [];
-crank_holes = [[0, 0, motor_hole], [a, 0, hole]];
-coupler_holes = concat([[0, 0, hole]], drill_P == 1 ? [[Px, Py, hole]] : []);
+crank_holes = [[0, 0, @hole:crank:A@], [a, 0, @hole:crank:C@]];
+coupler_holes = concat([[0, 0, @hole:coupler:C@]], drill_P == 1 ? [[Px, Py, @hole:coupler:P@]] : []);
 coupler_slot = [[travel_from - guide / 2 - end, 0], [travel_to + guide / 2 + end, 0]];
 coupler_corners = [[Px, Py]];
-block_holes = [[0, offset, hole], [-guide / 2, 0, hole], [guide / 2, 0, hole]];
+block_holes = [[0, offset, @hole:block:B@], [-guide / 2, 0, @hole:block:E@], [guide / 2, 0, @hole:block:F@]];
 "#;
 
 /// The modules of the plates.
 const PLATES: &str = r#"washer = thickness / 10; // between the layers of the assembly
 function sides(radius) = max(24, min(720, ceil(180 / max(0.25, acos(max(0, 1 - chord / radius))))));
 function radius(largest) = max(hole, largest) / 2 + margin;
-r = radius(hole);
-r_ground = radius(boss_hole);
-r_crank = radius(motor_hole);
-
+@radii@
 // A plate: the hull of its holes, its slot and further corners grown by a radius r, holes and slot taken out.
-module plate(holes, r, slot = [], corners = []) {
+module plate(holes, r@t@, slot = [], corners = []) {
     difference() {
         linear_extrude(thickness) hull()
             for (h = concat(holes, slot, corners)) translate([h.x, h.y]) circle(r = r, $fn = sides(r));
@@ -127,14 +124,14 @@ module plate(holes, r, slot = [], corners = []) {
             for (h = slot) translate([h.x, h.y]) circle(d = hole, $fn = sides(hole / 2));
     }
 }
-module ground() plate(ground_holes, r_ground, ground_slot);
-module crank() plate(crank_holes, r_crank);
-module coupler() plate(coupler_holes, r, coupler_slot, coupler_corners);
-module block() plate(block_holes, r);
+module ground() plate(ground_holes, @r:ground@@t:ground@, ground_slot);
+module crank() plate(crank_holes, @r:crank@@t:crank@);
+module coupler() plate(coupler_holes, @r:coupler@@t:coupler@, coupler_slot, coupler_corners);
+module block() plate(block_holes, @r:block@@t:block@);
 
 // Puts a plate's origin on a joint and its x axis along a vector, in a layer.
 module place(from, vector, layer)
-    translate([from.x, from.y, layer * (thickness + washer)]) rotate(atan2(vector.y, vector.x)) children();
+    translate([from.x, from.y, layer * @pitch@]) rotate(atan2(vector.y, vector.x)) children();
 "#;
 
 /// The position of a slider-crank: D = Q + y s with |D - C| = b.
@@ -184,12 +181,12 @@ coupler_points = concat(coupler_holes, coupler_slot, coupler_corners);
 if (view == "assembly") {
     assembly();
 } else {
-    above_ground = height(ground_points, r_ground);
-    above_crank = above_ground + height(crank_holes, r_crank);
-    above_coupler = above_crank + height(coupler_points, r);
-    laid(ground_points, r_ground, 0) ground();
-    laid(crank_holes, r_crank, above_ground) crank();
-    laid(coupler_points, r, above_crank) coupler();
-    laid(block_holes, r, above_coupler) block();
+    above_ground = height(ground_points, @r:ground@);
+    above_crank = above_ground + height(crank_holes, @r:crank@);
+    above_coupler = above_crank + height(coupler_points, @r:coupler@);
+    laid(ground_points, @r:ground@, 0) ground();
+    laid(crank_holes, @r:crank@, above_ground) crank();
+    laid(coupler_points, @r:coupler@, above_crank) coupler();
+    laid(block_holes, @r:block@, above_coupler) block();
 }
 "#;
