@@ -87,7 +87,7 @@ fn at(peak: &Peak, unit: &str) -> String {
 }
 
 /// Returns the figures over the range of the crank in sentences, wrapped.
-pub(super) fn words(record: &LoadRecord, omega2_rad_s: f64) -> String {
+pub fn words(record: &LoadRecord, omega2_rad_s: f64) -> String {
     let Some(figures) = &record.figures else {
         return wrapped("  ", "  ", "Loads: the linkage closes at no crank angle.", COLUMNS);
     };

@@ -1,7 +1,7 @@
 // What the page asks of the studio over HTTP: see /openapi.json.
 
 import type { Reading, Shown, Solution, Task } from "./messages";
-import type { Compared, Details, JobList, JobShown, Opened, Source } from "./wire";
+import type { Compared, Details, JobList, JobShown, Loaded, LoadsAsk, Opened, Source } from "./wire";
 
 export type { Compared, Details, JobList, JobShown, Opened, Source };
 
@@ -31,6 +31,7 @@ export const cancel = (name: string) => answered(`${at(name)}/cancel`, null);
 export const resume = (name: string) => answered(`${at(name)}/resume`, null);
 export const open = async (name: string) => (await answered(`${at(name)}/opened`)).json() as Promise<Opened>;
 export const details = async (of: Source) => (await answered("/details", { of })).json() as Promise<Details>;
+export const loaded = async (ask: LoadsAsk) => (await answered("/loads", ask)).json() as Promise<Loaded>;
 export const judged = async (ask: Task, linkage: Shown["linkage"]) =>
   (await answered("/judged", { ask, linkage })).json() as Promise<Shown>;
 export const exported = async (

@@ -4,6 +4,8 @@
 import { element, shape } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
+import type { Page } from "./kit";
+import { LoadsPanel } from "./loads";
 import { pinnedFor } from "./task";
 
 /** Sizes: the setting of the studio, its label, and what stands in an empty field. */
@@ -18,7 +20,14 @@ const SIZES: [string, string, string][] = [
 /** Milliseconds after the last change of a size before the plates are drawn anew. */
 const REST = 250;
 
+/** The page, once the second script has joined it. */
+export const joined: { page: Page | null } = { page: null };
+
 export class BuildPanel {
+  /** The one panel of the page. */
+  static shown: BuildPanel | null = null;
+  /** What turns the linkage. */
+  readonly loads: LoadsPanel;
   private fields = new Map<string, HTMLInputElement>();
   private sheet = [0, 1].map(
     (i) =>
@@ -77,6 +86,10 @@ export class BuildPanel {
         changed();
         this.later();
       });
+    this.loads = new LoadsPanel(host, joined.page as Page, () => {
+      changed();
+      this.later();
+    });
     const sheet = element("div", { class: "sheet" }, ["Sheet ", this.sheet[0], " × ", this.sheet[1], " mm"]);
     place.append(
       element("h2", {}, ["Build it"]),
@@ -90,7 +103,9 @@ export class BuildPanel {
       element("div", { class: "row" }, [this.dxf, this.save, this.elsewhere]),
       this.cutting,
       element("details", { open: "" }, [element("summary", {}, ["Layers and clearances"]), this.layers]),
+      this.loads.place,
     );
+    BuildPanel.shown = this;
     this.dxf.addEventListener("click", () => void this.file("dxf-plates", "-plates.dxf"));
     this.save.addEventListener("click", () => void this.file("archive", ".zip"));
   }
@@ -101,11 +116,12 @@ export class BuildPanel {
 
   /** What stands in the fields. */
   get sizes(): Record<string, string> {
-    return Object.fromEntries([...this.all()].map(([key, { value }]) => [key, value]));
+    return { ...Object.fromEntries([...this.all()].map(([key, { value }]) => [key, value])), ...this.loads.kept };
   }
 
   set sizes(sizes: Record<string, string>) {
     for (const [key, field] of this.all()) field.value = sizes[key] ?? "";
+    this.loads.kept = sizes;
   }
 
   private set(): Record<string, string> {
@@ -129,8 +145,11 @@ export class BuildPanel {
   /** Another linkage is chosen, or another size: what is in sight is made anew when the hand rests. */
   later() {
     clearTimeout(this.timer);
-    if (!this.isOpen) return;
-    this.timer = setTimeout(() => void this.show(), REST) as unknown as number;
+    if (!this.isOpen) return void this.loads.show();
+    this.timer = setTimeout(() => {
+      void this.show();
+      void this.loads.show();
+    }, REST) as unknown as number;
   }
 
   private async show() {

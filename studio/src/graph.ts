@@ -41,7 +41,7 @@ export function generated(shown: Shown, pairs: Point[], inputs: number[]): numbe
 }
 
 /** Round numbers between two others. */
-function ticks(low: number, high: number, most: number): number[] {
+export function ticks(low: number, high: number, most: number): number[] {
   const rough = (high - low) / most;
   const unit = 10 ** Math.floor(Math.log10(rough));
   const step = ([1, 2, 5, 10].find((by) => by * unit >= rough) ?? 10) * unit;

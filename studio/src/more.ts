@@ -3,7 +3,7 @@
 
 import { AnglesPlayer } from "./angles";
 import * as api from "./api";
-import { BuildPanel } from "./build";
+import { BuildPanel, joined } from "./build";
 import type { Example } from "./examples";
 import { Graph } from "./graph";
 import type { Kit, Page } from "./kit";
@@ -30,6 +30,7 @@ class Second implements Kit {
 
   join(page: Page) {
     this.page = page;
+    joined.page = page;
     document.head.append(
       Object.assign(document.createElement("link"), {
         rel: "stylesheet",
@@ -57,6 +58,7 @@ class Second implements Kit {
   posed(part: number) {
     this.poses.posed(part);
     this.graph.posed(part);
+    BuildPanel.shown?.loads.posed(part);
   }
 
   take(event: PointerEvent) {

@@ -12,6 +12,7 @@ use crate::app::job::run::Job;
 use crate::files::name::{self, NameError};
 use crate::judge::assess::{assess, measure_beside};
 use crate::judge::verify::{Mismatch, verify};
+use crate::mechanism::loads::LoadError;
 use crate::mechanism::{AssemblyMode, CrankLinkage, LinkageKeys, NoLinkage};
 use crate::record::digest::ProblemError;
 use crate::record::{Candidate, Evaluations, ProblemRecord, Reason, Record};
@@ -261,6 +262,10 @@ pub(super) enum DetailsError {
     NotPacked(String),
     #[error(transparent)]
     Name(#[from] NameError),
+    #[error("forces need a unit of length: choose mm, cm, m or in under Points")]
+    NoUnit,
+    #[error(transparent)]
+    Loads(#[from] LoadError),
     #[error("compare 1 to {MOST_COMPARED} linkages")]
     HowMany,
     #[error(transparent)]
@@ -270,19 +275,19 @@ pub(super) enum DetailsError {
 }
 
 /// A record and one of its candidates, counted from 0.
-struct Found {
-    record: Record,
+pub(super) struct Found {
+    pub(super) record: Record,
     index: usize,
 }
 
 impl Found {
-    fn candidate(&self) -> &Candidate {
+    pub(super) fn candidate(&self) -> &Candidate {
         &self.record.candidates[self.index]
     }
 }
 
 impl House {
-    fn find(&self, source: &Source, with_costs: bool) -> Result<Found, DetailsError> {
+    pub(super) fn find(&self, source: &Source, with_costs: bool) -> Result<Found, DetailsError> {
         match source {
             Source::Job(OfJob { name, rank }) => {
                 let record = self.jobs.shelf.record(name)?;

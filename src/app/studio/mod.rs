@@ -10,6 +10,7 @@
 //! tab.rs          one tab's work: a mailbox of one, the answers that follow the hand, the search behind them
 //! jobs.rs         long searches that are saved; shelf.rs: the folder of results
 //! details.rs      one linkage: what the report says of it, files, comparisons
+//! loads.rs        what turns a linkage: torque with a weight at P and springs
 //! workshop.rs     what a maker takes: layers and clearances, one archive of everything
 //! status.rs       how a search ended, in words
 //! routes.rs       every request that is answered; openapi.rs: the same described
@@ -32,6 +33,7 @@ mod house;
 pub mod job_messages;
 mod jobs;
 mod kept;
+mod loads;
 pub mod messages;
 pub mod openapi;
 mod pin_map;

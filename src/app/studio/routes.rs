@@ -8,6 +8,7 @@ use super::guard::LIVE;
 use super::house::{Answered, House, Refused, content};
 use super::job_messages::{JobAsk, JobShown, Opened};
 use super::jobs::Refusal;
+use super::loads::LoadsAsk;
 use super::messages::{Ask, LinkageAsk, Text, schemas};
 use super::openapi::document;
 use super::reading;
@@ -235,6 +236,8 @@ fn routes_of_linkages() -> Vec<Route> {
         ),
         Route::asked("/export", UNREADABLE, |house, ask: ExportAsk| Ok(house.file(&ask)?))
             .summed_up("A linkage as a file, as `linkwright export` and `linkwright report` write it."),
+        Route::asked("/loads", UNREADABLE, |house, ask: LoadsAsk| Ok(house.loaded(&ask)?))
+            .summed_up("The torque that turns a linkage with a weight at P and springs."),
         Route::asked("/compare", UNREADABLE, |house, ask: CompareAsk| Ok(house.compared(&ask)?))
             .giving_json(Comparison::schema)
             .summed_up("Linkages side by side, as `linkwright compare` puts them."),

@@ -57,6 +57,19 @@ fn record(loaded: &LoadedLinkage, input: CrankMotion) -> LoadRecord {
     }
 }
 
+/// Returns the loads of a linkage over the range of its crank, at the crank's motion.
+///
+/// # Errors
+/// [`LoadError`] if the loads do not fit the linkage, or there is no unit.
+pub fn load_record(
+    linkage: &Linkage,
+    unit: Option<Unit>,
+    loads: &Loads,
+    input: CrankMotion,
+) -> Result<LoadRecord, LoadError> {
+    prepared(linkage, unit, loads).map(|loaded| record(&loaded, input))
+}
+
 /// Returns the result at a crank angle in degrees; `None` at one that is open, undetermined or a toggle.
 fn at(
     loaded: &LoadedLinkage,
