@@ -30,23 +30,25 @@ test("a weight at P takes torque, a spring of two clicks changes it, and both ar
   await says(page, "#torque-words", /peak of/);
   await page.waitForSelector("#torque .curve");
   const weight = await peak(page);
-  await page.locator("#weight_kg").fill("4");
-  await page.waitForFunction((before) => !document.querySelector("#torque-words").textContent.includes(before), `${weight} N m`);
+  const changes = async (act) => {
+    const before = await page.locator("#torque-words").textContent();
+    await act();
+    await page.waitForFunction((before) => document.querySelector("#torque-words").textContent !== before, before);
+  };
+  await changes(() => page.locator("#weight_kg").fill("4"));
   assert.ok(Math.abs((await peak(page)) / weight - 2) < 1e-3, "twice the weight takes twice the torque");
 
   // From P, wherever it is now, to a fixed point.
   await page.locator("#play").click();
   await page.locator("#add-spring").click();
-  const point = await page.locator(".board .tracer").first().boundingBox();
+  const point = await page.locator(".board .figure:not(.second, .absent) .tracer").boundingBox();
   const stage = await page.locator("#stage").boundingBox();
   await page.mouse.click(point.x + point.width / 2, point.y + point.height / 2);
   await page.mouse.click(stage.x + 60, stage.y + 60);
   await says(page, "#loads .spring", /^P to \(/);
   assert.equal(await page.locator(".board .springs path").count(), 1);
   assert.match(await page.locator("#add-spring").textContent(), /Add a spring/);
-  const before = await page.locator("#torque-words").textContent();
-  await page.getByLabel("Rate of spring 1").fill("0.05");
-  await page.waitForFunction((before) => document.querySelector("#torque-words").textContent !== before, before);
+  await changes(() => page.getByLabel("Rate of spring 1").fill("0.05"));
   if (shots) await page.screenshot({ path: join(shots, "loads.png") });
 
   await page.reload();

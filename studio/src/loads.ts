@@ -16,8 +16,8 @@ const DEGREES = 180 / Math.PI;
 const [LEFT, RIGHT, TOP, BOTTOM] = [58, 14, 22, 24];
 /** A click as near to a joint takes it, pixels. */
 const NEAR = 16;
-/** Coils of a spring as it is drawn, and half their width in pixels. */
-const [COILS, WIDTH] = [9, 5];
+/** The distance of the turns of a spring as it is drawn, and half their width, pixels. */
+const [TURN, WIDTH] = [7, 6];
 /** The number fields: under which they are kept, their labels and units. */
 const FIELDS = [
   ["weight_kg", "Weight at P", "kg"],
@@ -31,8 +31,12 @@ export class LoadsPanel {
   );
   private rows = element("div");
   private add = element("button", { id: "add-spring" }, ["Add a spring"]) as HTMLButtonElement;
-  private words = element("pre", { id: "torque-words", tabindex: "0", "aria-label": "Torque and joint forces" });
-  private svg = shape("svg", { class: "graph", role: "img", "aria-label": "The torque on the crank over its angle" });
+  private words = element("p", { id: "torque-words", class: "note" });
+  private svg = shape("svg", {
+    class: "stage graph",
+    role: "img",
+    "aria-label": "The torque on the crank over its angle",
+  });
   private chart = element("div", { id: "torque", hidden: "" }, [this.svg]);
   private cursor = shape("path", { class: "cursor" });
   private drawn = shape("g", { class: "springs" });
@@ -100,13 +104,16 @@ export class LoadsPanel {
   async show() {
     const chosen = this.host.chosen();
     this.place.hidden = !chosen;
-    this.chart.hidden = !(this.isOpen && chosen);
+    if (!(this.isOpen && chosen)) this.chart.hidden = true;
     this.pose();
     if (!chosen || !this.isOpen) return;
     const [weight_kg, rpm] = this.fields.map(({ valueAsNumber }) => valueAsNumber || 0);
     const ask = { of: api.drawn(chosen), weight_kg, rpm, springs: this.springs };
     const key = JSON.stringify(ask);
-    if (key === this.key) return;
+    if (key === this.key) {
+      this.chart.hidden = this.torque.length === 0;
+      return;
+    }
     this.key = key;
     let found: Loaded = { words: "", torque: [] };
     try {
@@ -117,6 +124,7 @@ export class LoadsPanel {
     if (this.key !== key) return;
     this.words.textContent = found.words;
     this.torque = found.torque as Point[][];
+    this.chart.hidden = this.torque.length === 0;
     this.draw();
   }
 
@@ -264,7 +272,7 @@ export class LoadsPanel {
     const rule = (at: number, name: string) =>
       shape("path", { class: name, d: `M${LEFT} ${px(y(at))}H${width - RIGHT}` });
     this.svg.replaceChildren(
-      ...ticks(low, high, Math.max((height - TOP - BOTTOM) / 34, 2)).flatMap((value) => [
+      ...ticks(low, high, Math.max((height - TOP - BOTTOM) / 22, 2)).flatMap((value) => [
         rule(value, value === 0 ? "zero" : "grid"),
         words(LEFT - 6, y(value) + 4, String(value), "left"),
       ]),
@@ -291,8 +299,9 @@ function coils([x, y]: Point, [toX, toY]: Point): Point[] {
     x + ux * along * length - uy * across,
     y + uy * along * length + ux * across,
   ];
-  const zigzag = Array.from({ length: COILS }, (_, i) =>
-    at(0.2 + (0.6 * (i + 0.5)) / COILS, i % 2 === 0 ? WIDTH : -WIDTH),
+  const turns = Math.max(Math.round((0.6 * length) / TURN), 5);
+  const zigzag = Array.from({ length: turns }, (_, i) =>
+    at(0.2 + (0.6 * (i + 0.5)) / turns, i % 2 === 0 ? WIDTH : -WIDTH),
   );
   return [at(0, 0), at(0.2, 0), ...zigzag, at(0.8, 0), at(1, 0)];
 }

@@ -117,6 +117,20 @@ export type Defect =
       kind: "circuit";
     };
 /**
+ * An end of a spring.
+ */
+export type End =
+  | {
+      joint: string;
+    }
+  | {
+      /**
+       * @minItems 2
+       * @maxItems 2
+       */
+      point: [number, number];
+    };
+/**
  * The state of a job.
  */
 export type JobState = "running" | "done" | "stopped" | "broken-off" | "elsewhere" | "failed" | "unreadable";
@@ -151,6 +165,7 @@ export interface Wire {
   Drive: Drive;
   DriveKind: DriveKind;
   DyadKeys: DyadKeys;
+  End: End;
   Expect: Expect;
   ExpectedCensus: ExpectedCensus;
   ExportAsk: ExportAsk;
@@ -172,6 +187,8 @@ export interface Wire {
   LinkageAsk: LinkageAsk;
   LinkageKind: LinkageKind;
   LinkageType: LinkageType;
+  Loaded: Loaded;
+  LoadsAsk: LoadsAsk;
   Method: Method;
   Objective: Objective;
   OfJob: OfJob;
@@ -187,6 +204,7 @@ export interface Wire {
   Sense: Sense;
   Shown: Shown;
   Source: Source;
+  SpringAsk: SpringAsk;
   Sure: Sure;
   Text: Text;
   TimingSpec: TimingSpec;
@@ -1419,6 +1437,57 @@ export interface LinkageAsk {
    */
   name?: string;
   unit?: Unit;
+}
+/**
+ * The loads of a linkage over the range of its crank.
+ */
+export interface Loaded {
+  /**
+   * The torque on the crank, N m, at crank angles in degrees: [angle, torque] along each stretch without a gap.
+   */
+  torque: [number, number][][];
+  /**
+   * What `linkwright analyze` says of them, on one line.
+   */
+  words: string;
+}
+/**
+ * A linkage with what loads it.
+ */
+export interface LoadsAsk {
+  of: Source;
+  /**
+   * The speed of the crank, counter-clockwise, turns a minute; 0: it stands still.
+   */
+  rpm?: number;
+  /**
+   * The springs.
+   */
+  springs?: SpringAsk[];
+  /**
+   * The mass at P, kg, which gravity pulls down along -y.
+   */
+  weight_kg?: number;
+}
+/**
+ * An extension spring.
+ */
+export interface SpringAsk {
+  /**
+   * Its two ends.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  ends: [End, End];
+  /**
+   * The length at which it bears no force, in the drawing's unit.
+   */
+  free_length: number;
+  /**
+   * N/mm.
+   */
+  rate_N_per_mm: number;
 }
 /**
  * A saved result, opened.

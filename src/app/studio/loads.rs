@@ -58,7 +58,7 @@ pub enum End {
 /// The loads of a linkage over the range of its crank.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Loaded {
-    /// What `linkwright analyze` says of them.
+    /// What `linkwright analyze` says of them, on one line.
     pub words: String,
     /// The torque on the crank, N m, at crank angles in degrees: [angle, torque] along each stretch without a gap.
     pub torque: Vec<Vec<[f64; 2]>>,
@@ -78,8 +78,14 @@ impl House {
         let strands = record.figures.iter().flat_map(|figures| &figures.torque_strands);
         let torque =
             strands.map(|strand| strand.iter().map(|(deg, torque)| [*deg, *torque]).collect()).collect();
-        Ok(Loaded { words: words(&record, input.speed_rad_s), torque })
+        Ok(Loaded { words: of_the_page(&words(&record, input.speed_rad_s)), torque })
     }
+}
+
+/// Returns sentences of the command line without its lines, with the page's field in place of its option.
+fn of_the_page(words: &str) -> String {
+    let words: Vec<&str> = words.split_whitespace().collect();
+    words.join(" ").replace("--rpm", "“Crank turns”")
 }
 
 /// Returns what is asked for as loads in SI units: the mass is on the last body that carries P.
