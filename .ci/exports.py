@@ -492,14 +492,14 @@ class Shop:
     """Shop data in mm: diameters by joint and link, the radius and the thickness of each plate."""
 
     hole, margin, thickness = 0.8, 1.1, 1.5
-    own = {("A", "crank"): 1.2, ("A", "ground"): 1.6, "C": 1.0, "P": 0.6}
+    own = {("A", "crank"): 1.0, ("A", "ground"): 1.6, "C": 0.9, "P": 0.6}
 
     def __init__(self):
         self.path = FOLDER / "sizes.shop.toml"
         self.path.write_text(
             'format = 1\nunit = "cm"\n[shop]\nhole = 0.08\nmargin = 0.11\nthickness = 0.15\n'
-            "[shop.joint.A]\nhole_in = { crank = 0.12, ground = 0.16 }\n"
-            "[shop.joint.C]\nhole = 0.1\n[shop.joint.P]\nhole = 0.06\n"
+            "[shop.joint.A]\nhole_in = { crank = 0.1, ground = 0.16 }\n"
+            "[shop.joint.C]\nhole = 0.09\n[shop.joint.P]\nhole = 0.06\n"
             "[shop.body.crank]\nwidth = 0.42\n[shop.body.coupler]\nthickness = 0.25\n"
         )
 
@@ -589,7 +589,7 @@ def check_shop_dxf(path):
     radii = sorted(round(c.dxf.radius, 9) for c in document.modelspace().query("CIRCLE[layer=='JOINTS']"))
     joints = [name for name in linkage.joints(crank_deg) if name != "D" or not hasattr(linkage, "h")]
     # What stands at a joint: at A the smaller of its two holes.
-    drawn = {"A": 1.2, "C": 1.0, "P": 0.6}
+    drawn = {"A": 1.0, "C": 0.9, "P": 0.6}
     assert radii == sorted(round(drawn.get(name, 0.8) / 2, 9) for name in joints), (path, radii)
 
 

@@ -167,7 +167,8 @@ pub(crate) fn of_linkage_file(
         let link = names.body(&name).map_err(|fault| at(&["body", &name], fault))?;
         shop.bodies.push((link, BodySizes { thickness: of(raw.thickness), width: of(raw.width) }));
     }
-    shop.check(&names, None).map_err(|(key, fault)| explain(toml, key, &fault))?;
+    let bores = shop.bores(&names, shop.hole.unwrap_or(f64::NAN));
+    shop.check(&names, &bores).map_err(|(key, fault)| explain(toml, key, &fault))?;
     Ok(shop)
 }
 

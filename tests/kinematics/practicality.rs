@@ -9,7 +9,7 @@ use linkwright::internals::judge::practicality::sensitivity::{
 };
 use linkwright::internals::judge::practicality::sweep::Stretch;
 use linkwright::internals::judge::practicality::{Build, Joint, Sweep};
-use linkwright::internals::mechanism::plates::{Edge, Link, Plate};
+use linkwright::internals::mechanism::plates::{Edge, Link, Pin, Plate};
 use linkwright::internals::mechanism::{
     AssemblyMode, Complex, CouplerCurve, CouplerSide, FourBar, Joints, LinkageType, NaturalCoordinates,
     cross, dot,
@@ -304,7 +304,7 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
     let slim = Build::of_radii(6.0, 3.0);
     // The coupler turns around its ground and never comes over it: crank below, follower above, both beside it.
     let l = drag(Complex::new(15.0, 10.0));
-    let found = stack(&l, &Sweep::of_linkage(l).expect("joined"), slim).expect("there is one");
+    let found = stack(&l, &Sweep::of_linkage(l).expect("joined"), slim.clone()).expect("there is one");
     assert_eq!(found.layers, [vec![Link::Crank], vec![Link::Ground, Link::Coupler], vec![Link::Follower]]);
     // A coupler that reaches over it lies above everything, on a crank pin that goes round outside.
     let l = drag(Complex::new(15.0, -60.0));

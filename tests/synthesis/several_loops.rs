@@ -195,7 +195,7 @@ fn plates_that_cannot_be_stacked_are_told_and_the_best_that_can_is_named() {
         for candidate in record.candidates.iter().chain([pick]) {
             let sweep = Sweep::of_candidate(&problem, candidate).expect("it closes");
             let hole = Build::usual_hole_of(&sweep, None).expect("there is room");
-            let found = layering(&sweep, Build::new(hole, hole)).expect("it closes");
+            let found = layering(&sweep, &Build::new(hole, hole)).expect("it closes");
             assert_eq!(stacks(candidate), found.stack.is_some(), "{shape} {}", candidate.rank);
             *(if stacks(candidate) { &mut can } else { &mut cannot }) += 1;
         }

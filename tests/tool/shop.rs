@@ -176,6 +176,24 @@ fn sizes_that_do_not_fit_are_refused_with_place_and_remedy() {
         (vec!["build", "arm.toml", "--shop", "none.toml"], "there is no such file"),
         (vec!["build", "arm.toml", "--shop", "empty.toml"], "a shop file has a table [shop]"),
         (
+            vec!["build", "arm.toml", "--shop", "narrow.toml", "--hole", "4", "--motor-hole", "9"],
+            "a hole of 9 at A",
+        ),
+        (vec!["export", "arm.toml", "--format", "csv", "--shop", "narrow.toml"], "means nothing for csv"),
+        (
+            vec![
+                "export",
+                "arm.toml",
+                "--format",
+                "dxf-plates",
+                "--shop",
+                "narrow.toml",
+                "--set",
+                "motor_hole_mm=10",
+            ],
+            "a hole of 10 at A does not fit into the crank, which is 9 wide (mm)",
+        ),
+        (
             vec!["export", "arm.toml", "--format", "stl", "--shop", "narrow.toml", "--set", "hole_mm=9"],
             "a hole of 9 at A does not fit into the crank, which is 9 wide (mm)",
         ),

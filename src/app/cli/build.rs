@@ -27,18 +27,22 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     let Some(hole) = hole else { return Err(no_room(&given)) };
     let mut build = Build::new(hole, set(options.margin, |shop| shop.margin).unwrap_or(hole));
     if let Some(shop) = shop {
-        let fault = shop.check(&Names::of(&given.linkage), Some(hole)).err();
-        if let Some((key, fault)) = fault {
-            return Err(refuse(format!("[shop] {}: {fault}: {}", key.join("."), fault.remedy())));
-        }
         build = build.with_shop(&given.linkage, shop);
     }
     let build = build.with_motor(options.motor_hole, options.boss_hole);
+    check(&given.linkage, &build)?;
     let Some(practicality) = given.practicality(build) else { return Err(nothing(&given.title)) };
     let tolerance = options.tolerance.unwrap_or_else(|| usual_tolerance(given.linkage, given.unit));
     terminal::answer(&format!("{}\n  {}\n\n", given.title, given.linkage));
     terminal::answer(&practicality_text(&practicality, given.unit, tolerance, terminal::colour()));
     Ok(Ended::Good)
+}
+
+/// Refuses holes that are wider than their plates, and pins that are thicker than their holes.
+fn check(linkage: &CrankLinkage, build: &Build) -> Result<(), Ended> {
+    let Some(shop) = &build.shop else { return Ok(()) };
+    shop.check(&Names::of(linkage), &build.bores)
+        .map_err(|(key, fault)| refuse(format!("[shop] {}: {fault}: {}", key.join("."), fault.remedy())))
 }
 
 /// Returns shop data in the unit of a linkage.

@@ -6,7 +6,7 @@ use super::result;
 use super::result::Given;
 use super::{Ended, refuse, refuse_at, terminal};
 use crate::files::diagnostic::{Diagnostic, escaped};
-use crate::report::export::{Refusal, Settings, Subject, export};
+use crate::report::export::{Format, Refusal, Settings, Subject, export};
 
 /// Runs the command.
 pub fn run(options: &Export) -> Result<Ended, Ended> {
@@ -14,6 +14,13 @@ pub fn run(options: &Export) -> Result<Ended, Ended> {
     if options.out.is_none() && !options.format.is_text() {
         let name = options.format.name();
         return Err(refuse(format!("{name} is not text: say where it goes with --out FILE.{name}")));
+    }
+    let has_holes = options.format.settings().contains(&"hole_mm");
+    if let Some(file) = options.shop.as_ref().filter(|_| !has_holes) {
+        let (file, name) = (terminal::shown(file), options.format.name());
+        return Err(refuse(format!(
+            "--shop {file} means nothing for {name}, which has no holes: leave it out"
+        )));
     }
     let shop = |linkage| result::read_shop(&options.result, options.shop.as_ref(), linkage);
     let subject = match result::read(&options.result)? {
@@ -24,6 +31,9 @@ pub fn run(options: &Export) -> Result<Ended, Ended> {
         }
     };
     let exported = export(&subject, options.format, &settings).map_err(|e| refused(options, e))?;
+    if subject.shop.is_some() && matches!(options.format, Format::Toml | Format::Json) {
+        terminal::tell("note: the shop data are not carried over");
+    }
     for note in &exported.notes {
         terminal::tell(&format!("note: {}", escaped(note)));
     }

@@ -85,11 +85,15 @@ pub fn read_shop(
     }
 }
 
-/// Says that loads of a linkage file are not carried over to what the command writes.
+/// Says that loads and shop data of a linkage file are not carried over to what the command writes.
 pub fn note_loads(argument: &Path) {
     if let Ok((_, Some(_))) = inputs::read_loaded_linkage(argument) {
         let file = terminal::shown(argument);
         terminal::tell(&format!("note: the loads of {file} are not carried over to the new linkage"));
+    }
+    if let Ok(Some(_)) = inputs::read_shop(argument) {
+        let file = terminal::shown(argument);
+        terminal::tell(&format!("note: the shop data of {file} are not carried over to the new linkage"));
     }
 }
 

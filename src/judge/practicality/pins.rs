@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The spacer fills the room between the two plates, where a layer between them has no plate at the joint, or where the lower
-//! plate is thinner than its layer. Joints in one place (A and B of coincident fixed pivots) share one pin through all of their plates.
+//! plate is thinner than its layer. A slot in which the pin always lies counts as a plate that it passes through. Joints in one place (A and B of coincident fixed pivots) share one pin through all of their plates.
 
 use super::layers::{Layering, Stack};
 use crate::mechanism::plates::{Bores, Joint, Link, Parts, Pin};
@@ -56,7 +56,8 @@ pub fn pin_lengths(
     let mut pins = grouped(parts);
     pins.iter_mut().for_each(|group| group.sort_by_key(|pin| pin.joint));
     pins.sort_by_key(|group| group.first().map(|pin| pin.joint));
-    Some(pins.iter().filter_map(|group| in_stack(group, stack, bores, &thickness)).collect())
+    let of = |group: &Vec<Pin>| in_stack(group, stack, (parts, bores), &thickness);
+    Some(pins.iter().filter_map(of).collect())
 }
 
 /// Returns the pins, those whose holes coincide in a plate together.
@@ -80,17 +81,23 @@ fn grouped(parts: &Parts) -> Vec<Vec<Pin>> {
 fn in_stack(
     group: &[Pin],
     stack: &Stack,
-    bores: &Bores,
+    (parts, bores): (&Parts, &Bores),
     thickness: &impl Fn(Link) -> f64,
 ) -> Option<PinLength> {
     let height = |layer: &Vec<Link>| layer.iter().map(|link| thickness(*link)).fold(0.0, f64::max);
+    let joined = |link: Link| group.iter().any(|pin| pin.joins.contains(&link));
+    let slotted = |link: Link| group.iter().any(|pin| parts.stands_in_slot(pin.joint, link));
     let mut plates: Vec<(f64, Link)> = Vec::new();
     let mut bottom = 0.0;
     for layer in &stack.layers {
-        let joined = |link: &&Link| group.iter().any(|pin| pin.joins.contains(link));
-        plates.extend(layer.iter().filter(joined).map(|link| (bottom, *link)));
+        let passed = layer.iter().filter(|link| joined(**link) || slotted(**link));
+        plates.extend(passed.map(|link| (bottom, *link)));
         bottom += height(layer);
     }
+    // A slot above or below both plates is not reached.
+    let first = plates.iter().position(|(_, link)| joined(*link))?;
+    let last = plates.iter().rposition(|(_, link)| joined(*link))?;
+    let plates = plates.get(first..=last)?;
     let (lowest, highest) = (plates.first()?, plates.last()?);
     let spacer = |pair: &[(f64, Link)]| {
         let length = pair[1].0 - pair[0].0 - thickness(pair[0].1);
@@ -111,7 +118,8 @@ fn in_stack(
 mod tests {
     use super::*;
     use crate::judge::practicality::layers::Layering;
-    use crate::mechanism::plates::Sizes;
+    use crate::mechanism::plates::{Sizes, Stretch};
+    use crate::mechanism::{AssemblyMode, SliderCrank, SliderCrankParameters};
     use crate::synthesis::fixture::linkage;
 
     /// Returns the layering of a four-bar with layers that are given.
@@ -168,5 +176,35 @@ mod tests {
             let spacers: f64 = pin.spacers.iter().map(|spacer| spacer.length).sum();
             assert!((pin.length - plates - spacers).abs() < 1e-12, "{pin:?}");
         }
+    }
+
+    #[test]
+    fn a_pin_in_a_slot_passes_through_the_slotted_plate_without_a_spacer_there() {
+        use Link::{Block, Coupler, Crank, Ground};
+        let slider = SliderCrank::new(SliderCrankParameters {
+            crank_pivot: [0.0, 0.0],
+            crank: 30.0,
+            coupler: 90.0,
+            line_point: [0.0, 10.0],
+            line_deg: 0.0,
+            coupler_x: 40.0,
+            coupler_y: 20.0,
+            assembly: AssemblyMode::Plus,
+        })
+        .expect("a slider-crank");
+        let turn = Stretch { from: 0.0, to: std::f64::consts::TAU, assembly: AssemblyMode::Plus };
+        let parts = Parts::new(slider, Sizes { hole: 4.0, margin: 4.0 }, &[turn]).expect("it closes");
+        let stack =
+            Stack { layers: vec![vec![Block], vec![Ground], vec![Crank], vec![Coupler]], through: vec![] };
+        let (_, four_bar) = layering(Vec::new());
+        let found = Layering { links: parts.links(), all_pins: parts.pins(), stack: Some(stack), ..four_bar };
+        let pins = pin_lengths(&found, &parts, &Bores::new(4.0), |_| 3.0).expect("a stack");
+        let of = |name: &str| pins.iter().find(|pin| pin.name() == name).expect("a pin");
+        assert_eq!(of("D").plates, [Block, Ground, Coupler]);
+        assert_eq!(of("D").spacers, [Spacer { between: [Ground, Coupler], length: 3.0 }]);
+        assert_eq!(
+            (of("D").length, of("E").length, of("F").plates.clone()),
+            (12.0, 6.0, vec![Block, Ground])
+        );
     }
 }

@@ -250,13 +250,12 @@ impl Shop {
         own.reduce(f64::max).or(self.rim).unwrap_or(RIM_SHARE * hole)
     }
 
-    /// Checks that holes are narrower than plates of a width of their own, and pins no thicker than their holes. `usual` is the
-    /// diameter of holes that have none; without one they are not looked at.
+    /// Checks that holes are narrower than plates of a width of their own, and pins no thicker than their holes. A diameter of `bores`
+    /// that is not known is NaN, and fits.
     ///
     /// # Errors
     /// The first [`ShopFault`] with the key that it is about.
-    pub fn check(&self, names: &Names, usual: Option<f64>) -> Result<(), (Key, ShopFault)> {
-        let bores = self.bores(names, usual.or(self.hole).unwrap_or(f64::NAN));
+    pub fn check(&self, names: &Names, bores: &Bores) -> Result<(), (Key, ShopFault)> {
         let key = |parts: &[&str]| parts.iter().map(|part| (*part).to_owned()).collect::<Key>();
         for (joint, links) in &names.holes {
             let name = joint.name();
@@ -270,10 +269,11 @@ impl Shop {
         }
         for (joint, sizes) in &self.joints {
             let (Some(pin), name) = (sizes.pin, joint.name()) else { continue };
-            if !names.pins.iter().any(|pin| pin.joint == *joint) {
+            let Some(joined) = names.pins.iter().find(|pin| pin.joint == *joint) else {
                 return Err((key(&["joint", name, "pin"]), ShopFault::NoPin(name)));
-            }
-            for link in names.links_of(*joint) {
+            };
+            // A guide pin also runs in a slot, which is as wide as the usual hole.
+            for link in &joined.joins {
                 let hole = bores.own(*link, *joint).unwrap_or(bores.usual);
                 if pin > hole {
                     let fault = ShopFault::PinTooThick { joint: name, body: link.name(), pin, hole };

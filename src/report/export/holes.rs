@@ -94,7 +94,7 @@ impl Holes {
     /// Checks that no hole is wider than its plate, and no pin thicker than its hole.
     pub(super) fn check_shop(&self, linkage: &CrankLinkage) -> Result<(), Refusal> {
         let Some(shop) = &self.shop else { return Ok(()) };
-        let found = shop.check(&Names::of(linkage), Some(self.pins));
+        let found = shop.check(&Names::of(linkage), &self.bores);
         found.map_err(|(_, fault)| Refusal::new(format!("{fault} (mm)"), fault.remedy()))
     }
 
