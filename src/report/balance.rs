@@ -10,6 +10,9 @@ use crate::mechanism::loads::{Place, Spring};
 /// Significant digits of what is to be bought and of what is left.
 const FIGURES: usize = 4;
 
+/// The part of the torque below which what is left is rounding.
+const ROUNDING: f64 = 1e-10;
+
 /// Returns the page of a balance by a spring; `range` are the crank angles, degrees.
 pub fn spring_text(name: &str, unit: Unit, range: [f64; 2], found: &SpringBalance, colour: Colour) -> String {
     let title = format!("{}: a spring that lets it stay where it is put", clean(name));
@@ -18,11 +21,13 @@ pub fn spring_text(name: &str, unit: Unit, range: [f64; 2], found: &SpringBalanc
     out.push_str(&wrapped("  ", "  ", &spring(unit, range, found), COLUMNS));
     out.push('\n');
     let mut grid = Grid::new(&[(Right, &["", "peak torque", "at", "rms torque"])]);
+    // Against the torque without the spring a number can be rounding.
+    let even = |value: f64, whole: f64| if value.abs() < ROUNDING * whole.abs() { 0.0 } else { value.abs() };
     let row = |label: &str, torque: &TorqueOver| {
         let numbers = [
-            format!("{} N m", significant(torque.peak.value.abs(), FIGURES)),
+            format!("{} N m", significant(even(torque.peak.value, found.before.peak.value), FIGURES)),
             format!("{}°", brief(torque.peak.crank_deg, 5)),
-            format!("{} N m", significant(torque.rms, FIGURES)),
+            format!("{} N m", significant(even(torque.rms, found.before.rms), FIGURES)),
         ];
         std::iter::once(plain(label.to_owned())).chain(numbers.map(plain)).collect::<Vec<_>>()
     };
@@ -32,8 +37,8 @@ pub fn spring_text(name: &str, unit: Unit, range: [f64; 2], found: &SpringBalanc
     let left = format!(
         "Left: {} % of the peak and {} % of the rms torque, at rest; computed anew with the spring at 1,801 crank angles. \
          Friction, which is left out, holds the rest.",
-        brief(found.residual_percent, 3),
-        brief(found.residual_rms_percent, 3)
+        brief(even(found.residual_percent, 100.0), 3),
+        brief(even(found.residual_rms_percent, 100.0), 3)
     );
     out.push('\n');
     out.push_str(&wrapped("  ", "  ", &left, COLUMNS));

@@ -1,7 +1,7 @@
 //! Loads of an analysis as text, as columns of a CSV, and as a chart of the torque over the crank angle.
 
 use super::analysis_text::{degrees, number};
-use super::canvas::{Area, Canvas, palette};
+use super::canvas::{Anchor, Area, Canvas, Spot, bold, font, palette};
 use super::chart::{Abscissa, Chart, Range, Series};
 use super::grid::Align::Right;
 use super::grid::{Colour, Grid, plain};
@@ -24,6 +24,8 @@ const NAMED_ANGLES: usize = 6;
 const STEADY: f64 = 0.05;
 /// The height of the chart.
 const HEIGHT: f64 = 210.0;
+/// The height of a row of the sheet's table.
+const ROW: f64 = 17.0;
 
 /// The names of the columns after those of the forces.
 const LAST: [&str; 5] = ["shaking_Fx_N", "shaking_Fy_N", "shaking_M_N_m", "kinetic_J", "potential_J"];
@@ -286,13 +288,37 @@ pub(super) fn torque_svg(figures: &LoadFigures) -> Option<String> {
     ))
 }
 
-/// Returns the chart of the torque as a sheet; `None` of a linkage that closes at no crank angle.
+/// Draws a row for each joint with its largest force, below a row of heads.
+fn joint_rows(canvas: &mut Canvas, joints: &[JointPeak], top: f64) {
+    const COLUMNS: [f64; 5] = [INSET, INSET + 110.0, INSET + 260.0, INSET + 470.0, INSET + 600.0];
+    let mut row = |i: usize, cells: [&str; 5], look: &str| {
+        let y = top + ROW * (i as f64 + 0.7);
+        for (k, (x, text)) in COLUMNS.into_iter().zip(cells).enumerate() {
+            let anchor = if k < 3 { Anchor::Start } else { Anchor::End };
+            canvas.text(Spot::new(x, y), anchor, look, text);
+        }
+    };
+    row(0, ["joint", "on", "from", "largest force", "at"], &bold(12, palette::INK));
+    let look = font(12, palette::INK);
+    for (i, joint) in joints.iter().enumerate() {
+        let slides = if joint.slides { " (slider)" } else { "" };
+        let at = format!("{}{slides}", clean(&joint.at));
+        let [on, from] = [&joint.on, &joint.from].map(|name| clean(name));
+        let force = format!("{} N", significant(joint.force.value.abs(), FIGURES));
+        row(i + 1, [&at, &on, &from, &force, &degrees(joint.force.crank_deg)], &look);
+    }
+}
+
+/// Returns the chart of the torque as a sheet, with the largest force of each joint below it; `None` of a linkage that closes at no crank angle.
 pub(super) fn sheet(record: &LoadRecord, toggles_deg: &[f64]) -> Option<Sheet> {
     let figures = record.figures.as_ref()?;
     let (chart, abscissa) = torque_chart(figures, toggles_deg)?;
-    let mut sheet = Sheet::new("Loads", FULL, HEAD + HEIGHT + 8.0);
+    let listed = figures.joints.len().min(NAMED_PAIRS);
+    let bottom = HEAD + HEIGHT + 14.0;
+    let mut sheet = Sheet::new("Loads", FULL, bottom + ROW * (listed + 1) as f64 + 6.0);
     let area = Area { x: INSET, y: HEAD, width: FULL - 2.0 * INSET, height: HEIGHT };
     chart.draw(&mut sheet.body, &abscissa, area);
+    joint_rows(&mut sheet.body, &figures.joints[..listed], bottom);
     sheet.note = format!(
         "peak {}, {} N m rms; friction is left out",
         at(&figures.torque_peak, "N m"),

@@ -69,7 +69,14 @@ fn a_binding_torque_is_used_up_to_its_limit_and_costs() {
 
 #[test]
 fn a_torque_that_no_linkage_keeps_is_a_conflict_with_a_way_out() {
-    let record = run_on(2, stride(&[("solve.candidates", "1"), ("require.peak_torque_max", "0.05")]));
+    let record = run_on(
+        2,
+        stride(&[
+            ("solve.candidates", "1"),
+            ("solve.evaluations", "3000"),
+            ("require.peak_torque_max", "0.05"),
+        ]),
+    );
     assert!(record.candidates.iter().all(|c| !c.accepted));
     let named = record.relaxations.iter().flat_map(|r| &r.set);
     assert!(

@@ -4,6 +4,7 @@ mod advice;
 mod analysis_sheets;
 mod analyze;
 mod bad_input;
+mod balance;
 mod batches;
 mod building;
 mod certifying;

@@ -100,11 +100,17 @@ fn the_fit_is_the_least_of_its_neighbours() {
             assert!(rms(rate * (1.0 + more), free) >= best * (1.0 - 1e-12), "{more} {longer}");
         }
     }
-    // Of the rates that can be bought the nearest is taken, with a free length of its own.
-    let bought = SpringRequest { rates: vec![0.2 * rate, 1.1 * rate, 5.0 * rate], ..request };
-    let one = balance_by_spring(&four_bar(), Unit::Mm, &loads, &bought).expect("a spring");
-    let Spring::Extension { rate: taken, .. } = one.spring else { panic!("an extension spring") };
-    assert!((taken - 1.1 * rate).abs() < 1e-9 * rate && one.after.rms >= found.after.rms * (1.0 - 1e-9));
+    // Of the rates that can be bought the best is taken, with a free length of its own.
+    let of = |rates: Vec<f64>| {
+        let bought = SpringRequest { rates, ..request.clone() };
+        let found = balance_by_spring(&four_bar(), Unit::Mm, &loads, &bought).expect("a spring");
+        let Spring::Extension { rate, free_length, .. } = found.spring else { panic!("an extension spring") };
+        (rate, rms(rate, free_length))
+    };
+    let all = [0.2 * rate, 1.1 * rate, 5.0 * rate];
+    let (taken, left) = of(all.to_vec());
+    assert!(all.contains(&taken) && left >= best * (1.0 - 1e-12), "{taken} of {rate}");
+    assert!(all.iter().all(|one| of(vec![*one]).1 >= left * (1.0 - 1e-12)));
 }
 
 #[test]

@@ -20,7 +20,7 @@ pub struct Balance {
     #[arg(long, num_args = 1..=2, value_names = ["BODY", "AGAINST"])]
     pub torsion: Option<Vec<String>>,
     /// The crank angles over which a spring is to hold, degrees [default: all that the crank reaches]
-    #[arg(long, value_name = "FROM,TO", value_delimiter = ',', num_args = 1..=2, allow_hyphen_values = true, value_parser = finite)]
+    #[arg(long, value_name = "FROM,TO", value_delimiter = ',', allow_hyphen_values = true, value_parser = finite)]
     pub over: Option<Vec<f64>>,
     /// The rates of the springs that can be bought, N/m or N m/rad [default: any]
     #[arg(long, value_name = "RATE,..", value_delimiter = ',', allow_hyphen_values = true, value_parser = finite)]

@@ -24,9 +24,11 @@ const SAMPLES: usize = 96;
 /// turn rises by 2 %.
 const WORTH_REFINING: f64 = 0.97;
 const MOST_REFINED: usize = 3;
-/// Rounds of the refinement by parabolas, and the factor by which their width shrinks.
+/// Rounds of the refinement of each by parabolas and of the largest of them after that, and the factor by which their width
+/// shrinks: the derivatives of the row leave out the change of the angle, which has to be that of the peak.
 const ROUNDS: usize = 2;
-const SHRINK: f64 = 0.125;
+const LAST_ROUNDS: usize = 3;
+const SHRINK: f64 = 0.2;
 /// The step of central differences, in sizes of the target and in radians: the root of the rounding of a second difference.
 const STEP: f64 = 1e-6;
 
@@ -81,39 +83,56 @@ impl Loaded {
                 && [0, 2].iter().all(|by| near(*i, *by).is_none_or(|v| v <= here))
         };
         let peaks: Vec<usize> = (0..count).filter(is_peak).take(MOST_REFINED).collect();
-        let mut best: Option<(f64, usize, f64)> = None;
+        let mut best: Option<(Around, usize)> = None;
         for i in peaks {
-            let here = sizes[i].unwrap_or_default();
-            let mut found = (from + step * i as f64, here);
-            if let (Some(before), Some(after)) = (near(i, 0), near(i, 2)) {
-                found = self.refined(found, [before, after], step);
-            }
-            if best.is_none_or(|(_, _, size)| found.1 > size) {
-                best = Some((found.0, i, found.1));
+            let mut found =
+                Around { angle: from + step * i as f64, size: sizes[i].unwrap_or_default(), step };
+            let beside = near(i, 0).zip(near(i, 2)).map(|(before, after)| [before, after]);
+            self.refine(&mut found, beside, ROUNDS);
+            // Of a sample at an end, or beside an open position, there is nothing to refine.
+            found.step = if beside.is_some() { found.step } else { 0.0 };
+            if best.is_none_or(|(best, _)| found.size > best.size) {
+                best = Some((found, i));
             }
         }
-        best
+        let (mut found, i) = best?;
+        if found.step > 0.0 {
+            let beside = self.beside(&found);
+            self.refine(&mut found, beside, LAST_ROUNDS);
+        }
+        Some((found.angle, i, found.size))
     }
 
-    /// Returns a local maximum refined by parabolas through three values a step apart.
-    fn refined(&mut self, (mut angle, mut size): (f64, f64), beside: [f64; 2], mut step: f64) -> (f64, f64) {
-        let mut beside = Some(beside);
-        for _ in 0..ROUNDS {
-            let Some([before, after]) = beside else { break };
-            let bend = before - 2.0 * size + after;
+    /// Returns the sizes a step before and after an angle.
+    fn beside(&mut self, around: &Around) -> Option<[f64; 2]> {
+        Some([self.at(around.angle - around.step)?, self.at(around.angle + around.step)?])
+    }
+
+    /// Refines a local maximum by parabolas through three values a step apart.
+    fn refine(&mut self, around: &mut Around, mut beside: Option<[f64; 2]>, rounds: usize) {
+        for _ in 0..rounds {
+            let Some([before, after]) = beside else { return };
+            let bend = before - 2.0 * around.size + after;
             if bend >= 0.0 {
-                break;
+                return;
             }
-            let vertex = angle + step * (0.5 * (before - after) / bend).clamp(-1.0, 1.0);
+            let vertex = around.angle + around.step * (0.5 * (before - after) / bend).clamp(-1.0, 1.0);
             match self.at(vertex) {
-                Some(there) if there > size => (angle, size) = (vertex, there),
+                Some(there) if there > around.size => (around.angle, around.size) = (vertex, there),
                 _ => {}
             }
-            step *= SHRINK;
-            beside = self.at(angle - step).zip(self.at(angle + step)).map(|(before, after)| [before, after]);
+            around.step *= SHRINK;
+            beside = self.beside(around);
         }
-        (angle, size)
     }
+}
+
+/// A local maximum between values a step apart.
+#[derive(Clone, Copy)]
+struct Around {
+    angle: f64,
+    size: f64,
+    step: f64,
 }
 
 /// Returns the torque of largest size of the motion; `None` if the loop closes nowhere.
