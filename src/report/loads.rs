@@ -130,7 +130,7 @@ pub fn words(record: &LoadRecord, omega2_rad_s: f64) -> String {
 }
 
 /// Returns 0 for a mean that is rounding beside the values.
-fn rounded(mean: f64, size: f64) -> f64 {
+pub fn rounded(mean: f64, size: f64) -> f64 {
     /// Sums of some hundred values are known to this part of them.
     const ROUNDING: f64 = 1e-12;
     if mean.abs() <= ROUNDING * size { 0.0 } else { mean }

@@ -5,7 +5,7 @@ use super::table::{minus, scrolling};
 use crate::mechanism::loads::figures::JointPeak;
 use crate::mechanism::loads::{LoadFigures, Peak};
 use crate::record::{Candidate, Record};
-use crate::report::loads::torque_svg;
+use crate::report::loads::{rounded, torque_svg};
 use crate::report::text::{brief, clean, significant};
 use maud::{Markup, html};
 
@@ -53,7 +53,8 @@ fn words(figures: &LoadFigures) -> String {
     };
     let range =
         if figures.full_turn { "a turn" } else { "all that the crank reaches, 1° short of each toggle" };
-    let power = if figures.power_mean == 0.0 {
+    let mean = rounded(figures.torque_mean, figures.torque_rms);
+    let power = if mean == 0.0 || figures.power_mean == 0.0 {
         String::new()
     } else {
         format!(" {} W on average.", significant(figures.power_mean, 4))
