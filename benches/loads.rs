@@ -21,7 +21,7 @@ fn loads(c: &mut Criterion) {
     let (structure, joints) = (mechanism.structure(), mechanism.joint_names());
     let traced = joints[mechanism.traced()].to_owned();
     let mass = Mass::Given { mass_kg: 0.3, center: [0.02, 0.005], inertia_kg_m2: 1e-4 };
-    let of_body = |name: &String| BodyMass { body: name.clone(), mass };
+    let of_body = |name: &String| BodyMass { body: name.clone(), mass: mass.clone() };
     let push = ForceVector::Vector(Quantity::Constant([0.0, -10.0]), None);
     let ends = [Place::Joint(traced.clone()), Place::Fixed([0.1, 0.2])];
     let loads = Loads {

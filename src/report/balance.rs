@@ -13,6 +13,11 @@ const FIGURES: usize = 4;
 /// The part of the torque below which what is left is rounding.
 const ROUNDING: f64 = 1e-10;
 
+/// Returns the size of what is left of a whole; 0 for rounding.
+fn even(value: f64, whole: f64) -> f64 {
+    if value.abs() < ROUNDING * whole.abs() { 0.0 } else { value.abs() }
+}
+
 /// Returns the page of a balance by a spring; `range` are the crank angles, degrees.
 pub fn spring_text(name: &str, unit: Unit, range: [f64; 2], found: &SpringBalance, colour: Colour) -> String {
     let title = format!("{}: a spring that lets it stay where it is put", clean(name));
@@ -21,8 +26,6 @@ pub fn spring_text(name: &str, unit: Unit, range: [f64; 2], found: &SpringBalanc
     out.push_str(&wrapped("  ", "  ", &spring(unit, range, found), COLUMNS));
     out.push('\n');
     let mut grid = Grid::new(&[(Right, &["", "peak torque", "at", "rms torque"])]);
-    // Against the torque without the spring a number can be rounding.
-    let even = |value: f64, whole: f64| if value.abs() < ROUNDING * whole.abs() { 0.0 } else { value.abs() };
     let row = |label: &str, torque: &TorqueOver| {
         let numbers = [
             format!("{} N m", significant(even(torque.peak.value, found.before.peak.value), FIGURES)),
@@ -125,8 +128,8 @@ pub fn masses_text(name: &str, unit: Unit, rpm: f64, found: &MassBalance, colour
         Grid::new(&[(Right, &["", "peak torque", "torque ripple", "largest shaking force", "rms"])]);
     for (label, of) in [("without", &found.before), ("with", &found.after)] {
         let numbers = [
-            (of.torque_peak, "N m"),
-            (of.torque_ripple, "N m"),
+            (even(of.torque_peak, found.before.torque_peak), "N m"),
+            (even(of.torque_ripple, found.before.torque_ripple), "N m"),
             (of.shaking_force, "N"),
             (of.shaking_force_rms, "N"),
         ];
@@ -137,8 +140,8 @@ pub fn masses_text(name: &str, unit: Unit, rpm: f64, found: &MassBalance, colour
     let left = format!(
         "Left: {} % of the torque's ripple (rms, less the mean) and {} % of the shaking force (rms, less the mean, which are the \
          weights); computed anew with the masses at 1,440 crank angles.",
-        brief(found.ripple_percent, 3),
-        brief(found.shaking_percent, 3)
+        brief(even(found.ripple_percent, 100.0), 3),
+        brief(even(found.shaking_percent, 100.0), 3)
     );
     out.push('\n');
     out.push_str(&wrapped("  ", "  ", &left, COLUMNS));

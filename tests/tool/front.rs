@@ -121,7 +121,8 @@ fn the_rows_of_the_table_are_the_members_of_the_record_to_the_last_digit() {
     for member in &front.members {
         let cells: Vec<&str> = lines.next().expect("a row").split(',').collect();
         let number = |i: usize| -> f64 { cells[i].parse().expect("a number") };
-        let figures: Vec<f64> = Axis::ALL.map(|axis| member.figures.of(axis)).into();
+        // The torque has a column in a problem with loads alone.
+        let figures: Vec<f64> = Axis::ALL[..7].iter().map(|axis| member.figures.of(*axis)).collect();
         assert_eq!((0..7).map(number).collect::<Vec<_>>(), figures);
         assert_eq!(cells[7], "four-bar");
         let l = member.candidate.linkage.four_bar().expect("a four-bar");

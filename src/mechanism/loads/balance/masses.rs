@@ -32,6 +32,8 @@ const SAMPLES: usize = 360;
 const VERIFIED: usize = 1440;
 /// A mass below this part of all is left out.
 const LEAST_PART: f64 = 1e-6;
+/// The part of a force below which it is rounding.
+const ROUNDING: f64 = 1e-12;
 /// The part of the unevenness that masses have to take off, at least, to be any use.
 const LEAST_USE: f64 = 1e-9;
 
@@ -143,11 +145,16 @@ impl Turn {
         let count = self.torques.len() as f64;
         let (torques, forces) = (self.uneven_torques(), self.uneven_forces());
         let rms = |values: &[f64]| (values.iter().map(|x| x * x).sum::<f64>() / count).sqrt();
+        // The force of weights alone is constant but for rounding.
+        let whole = self.forces.iter().map(|force| force.norm()).fold(0.0, f64::max);
+        let shakes = |force: f64| if force < ROUNDING * whole { 0.0 } else { force };
         Unevenness {
             torque_peak: self.torques.iter().fold(0.0, |most, torque| torque.abs().max(most)),
             torque_ripple: rms(&torques),
-            shaking_force: forces.chunks_exact(2).map(|force| force[0].hypot(force[1])).fold(0.0, f64::max),
-            shaking_force_rms: rms(&forces),
+            shaking_force: shakes(
+                forces.chunks_exact(2).map(|force| force[0].hypot(force[1])).fold(0.0, f64::max),
+            ),
+            shaking_force_rms: shakes(rms(&forces)),
         }
     }
 
