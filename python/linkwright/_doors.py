@@ -180,8 +180,9 @@ def analyze(
     alpha: float = 0.0,
     method: Sequence[str] = (),
     all_configurations: bool = False,
+    loads: Mapping[str, Any] | Path | None = None,
 ) -> Analysis:
-    """Analyses a linkage: positions, velocities, accelerations, transmission angles, mobility.
+    """Analyses a linkage: positions, velocities, accelerations, transmission angles, mobility, and under loads its forces.
 
     Args:
         linkage: a linkage, a candidate, a result (its first candidate) or a path.
@@ -189,9 +190,12 @@ def analyze(
         omega, alpha: speed (rad/s) and acceleration (rad/s^2) of the crank.
         method: other methods beside: ``natural``, ``algebraic``, ``complex``, ``fixed-point``.
         all_configurations: all four assemblies (t1, t2), not the linkage's own alone.
+        loads: the keys of ``[loads]`` in a linkage file, lengths in the linkage's unit, or the path of a loads file; where silent,
+            those of a linkage file that is given by its path. Each row then has ``loads`` with ``torque_N_m`` and the joints'
+            ``forces``, and ``data["loads"]`` has the figures over the range of the crank.
 
     Raises:
-        ProblemError: the linkage or a setting is refused.
+        ProblemError: the linkage, the loads or a setting is refused.
 
     >>> import linkwright as lw
     >>> rows = lw.analyze(lw.FourBar((0, 0), (4, 1), 2, 5, 5, 5, 5), cycle=4).data["configurations"][0]["rows"]
@@ -201,7 +205,7 @@ def analyze(
     subject, which = _split(linkage)
     angles = None if angle_deg is None else _numbers(angle_deg)
     methods = [method] if isinstance(method, str) else list(method)
-    found = _linkwright.analyze(subject, which, angles, cycle, omega, alpha, methods, all_configurations)
+    found = _linkwright.analyze(subject, which, angles, cycle, omega, alpha, methods, all_configurations, loads)
     return Analysis(*found)
 
 

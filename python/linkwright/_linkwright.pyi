@@ -463,6 +463,7 @@ def analyze(
     alpha: float,
     methods: list[str],
     all_configurations: bool,
+    loads: Any = None,
 ) -> list[str]: ...
 def build(
     subject: Any,

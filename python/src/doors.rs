@@ -16,13 +16,14 @@ use linkwright::internals::app::snapping::{
 use linkwright::internals::app::suite::choice::{chosen, collection};
 use linkwright::internals::app::suite::{Options as SuiteOptions, Step, suite as run_suite};
 use linkwright::internals::files::linkage_file::{self, AnyLinkageFile, LinkageFile};
-use linkwright::internals::files::name;
 use linkwright::internals::files::schema::{SchemaKind, schema as schema_of};
+use linkwright::internals::files::{loads_file, name};
 use linkwright::internals::mechanism::analysis::driven::{MechanismRequest, analyze_mechanism};
 use linkwright::internals::mechanism::analysis::{
     PositionMethod, Request as Analysis, analyze as analyze_four_bar, full_turn,
 };
 use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
+use linkwright::internals::mechanism::loads::Loads;
 use linkwright::internals::mechanism::{CrankLinkage, Linkage};
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::analysis_csv::analysis_csv;
@@ -86,6 +87,30 @@ fn any_linkage(subject: &Bound<'_, PyAny>, which: Option<&str>) -> PyResult<AnyL
     }
     let path: PathBuf = subject.extract().map_err(|_| unfit(subject))?;
     inputs::read_linkage(&path).map_err(refused)
+}
+
+/// Returns the loads of a linkage: a dict with the keys of `[loads]`, or a path; of a linkage file without either its own.
+fn loads_of(
+    subject: &Bound<'_, PyAny>,
+    loads: Option<&Bound<'_, PyAny>>,
+    file: &AnyLinkageFile,
+) -> PyResult<Option<Loads>> {
+    let Some(given) = loads else {
+        let Ok(path) = subject.extract::<PathBuf>() else { return Ok(None) };
+        return inputs::read_loaded_linkage(&path).map(|(_, loads)| loads).map_err(refused);
+    };
+    if let Ok(path) = given.extract::<PathBuf>() {
+        return loads_file::load(&path, file).map(Some).map_err(refused);
+    }
+    let unit = file
+        .unit
+        .ok_or_else(|| refused("loads: the linkage has no unit of length; give unit=\"mm\" with it"))?;
+    let mut whole = toml::Table::new();
+    whole.insert("format".into(), 1.into());
+    whole.insert("unit".into(), unit.label().into());
+    whole.insert("loads".into(), toml::Value::Table(values::table(given)?));
+    let text = toml::to_string(&whole).map_err(refused)?;
+    loads_file::parse("loads", &text, file).map(Some).map_err(refused)
 }
 
 fn unfit(subject: &Bound<'_, PyAny>) -> PyErr {
@@ -184,7 +209,7 @@ pub fn compare<'py>(
 
 /// Analyses a linkage: JSON, table, CSV and sheets as SVG.
 #[pyfunction]
-#[pyo3(signature = (subject, which, crank_deg, cycle, omega, alpha, methods, all_configurations))]
+#[pyo3(signature = (subject, which, crank_deg, cycle, omega, alpha, methods, all_configurations, loads = None))]
 #[expect(clippy::too_many_arguments, reason = "the options of the command")]
 pub fn analyze<'py>(
     py: Python<'py>,
@@ -196,9 +221,12 @@ pub fn analyze<'py>(
     alpha: f64,
     methods: Vec<String>,
     all_configurations: bool,
+    loads: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<[String; 4]> {
     guarded(|| {
-        let LinkageFile { name, unit, linkage } = any_linkage(subject, which)?;
+        let file = any_linkage(subject, which)?;
+        let loads = loads_of(subject, loads, &file)?;
+        let LinkageFile { name, unit, linkage } = file;
         if !(1..=100_000).contains(&cycle) {
             return Err(refused(format!("cycle = {cycle}: 1 to 100000 are possible")));
         }
@@ -210,7 +238,10 @@ pub fn analyze<'py>(
             Linkage::FourBar(linkage) => {
                 let request = Analysis { name, unit, linkage, crank_deg, input, methods, all_configurations };
                 run_whole(py, move |_| {
-                    let found = analyze_four_bar(&request);
+                    let mut found = analyze_four_bar(&request);
+                    if let Some(loads) = &loads {
+                        found.add_loads(loads).map_err(|e| e.to_string())?;
+                    }
                     let json = serde_json::to_string(&found).map_err(|e| e.to_string())?;
                     Ok::<_, String>([
                         json,
@@ -228,7 +259,10 @@ pub fn analyze<'py>(
             linkage => {
                 let request = MechanismRequest { name, unit, linkage, crank_deg, input };
                 run_whole(py, move |_| {
-                    let found = analyze_mechanism(&request);
+                    let mut found = analyze_mechanism(&request);
+                    if let Some(loads) = &loads {
+                        found.add_loads(&request.linkage, loads).map_err(|e| e.to_string())?;
+                    }
                     let json = serde_json::to_string(&found).map_err(|e| e.to_string())?;
                     let svg = mechanism_svg(&found, &request.linkage);
                     Ok::<_, String>([

@@ -285,3 +285,26 @@ def test_the_command_is_installed(program: list[str]) -> None:
     assert said.stdout == f"linkwright {lw.__version__}\n"
     assert call([*program, "synth"]).returncode == 2
     assert "studio" in call([*program, "--help"]).stdout
+
+
+def test_loads_give_torque_and_joint_forces(tmp_path: Path, program: list[str]) -> None:
+    four_bar = lw.FourBar((0, 0), (80, 20), 30, 90, 80, 60, 60, unit="mm")
+    loads = {"gravity": [0, -9.81], "body": {"crank": {"mass_kg": 2.0, "center": [10, 0]}}}
+    rows = lw.analyze(four_bar, angle_deg=[0.0, 60.0], loads=loads).data["configurations"][0]["rows"]
+    # A crank with its centre 10 mm from A: it takes m g r cos(phi) to hold it.
+    torques = [row["loads"]["torque_N_m"] for row in rows]
+    assert torques == pytest.approx([2.0 * 9.81 * 0.01, 2.0 * 9.81 * 0.01 * 0.5], rel=1e-12)
+
+    # From files, as the command prints it.
+    (tmp_path / "four-bar.toml").write_text(four_bar.to_toml())
+    keys = 'format = 1\nunit = "mm"\n[loads]\ngravity = [0, -9.81]\n[loads.body.crank]\nmass_kg = 2.0\ncenter = [10, 0]\n'
+    (tmp_path / "loads.toml").write_text(keys)
+    options = [str(tmp_path / "four-bar.toml"), "--loads", str(tmp_path / "loads.toml"), "--json"]
+    said = call([*program, "analyze", *options])
+    found = lw.analyze(tmp_path / "four-bar.toml", loads=tmp_path / "loads.toml")
+    assert json.loads(said.stdout) == found.data
+    assert found.data["loads"]["torque_peak"]["value"] == pytest.approx(2.0 * 9.81 * 0.01, rel=1e-9)
+    with pytest.raises(lw.ProblemError, match="crnk"):
+        lw.analyze(four_bar, loads={"body": {"crnk": {"mass_kg": 1.0}}})
+    with pytest.raises(lw.ProblemError, match="unit"):
+        lw.analyze(lw.FourBar((0, 0), (4, 1), 2, 5, 5, 5, 5), loads={"gravity": [0, -9.81]})
