@@ -303,7 +303,7 @@ def test_loads_give_torque_and_joint_forces(tmp_path: Path, program: list[str]) 
     said = call([*program, "analyze", *options])
     found = lw.analyze(tmp_path / "four-bar.toml", loads=tmp_path / "loads.toml")
     assert json.loads(said.stdout) == found.data
-    assert abs(found.data["loads"]["torque_peak"]["value"]) == pytest.approx(2.0 * 9.81 * 0.01, rel=1e-9)
+    assert abs(found.data["loads"]["torque_peak_N_m"]["value"]) == pytest.approx(2.0 * 9.81 * 0.01, rel=1e-9)
     with pytest.raises(lw.ProblemError, match="crnk"):
         lw.analyze(four_bar, loads={"body": {"crnk": {"mass_kg": 1.0}}})
     with pytest.raises(lw.ProblemError, match="unit"):
