@@ -9,6 +9,9 @@ use crate::report::loads::torque_svg;
 use crate::report::text::{brief, clean, significant};
 use maud::{Markup, html};
 
+/// The part of the rms torque below which its mean is rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Returns the torque over the crank angle and the joints' forces, folded away; nothing of a problem without loads.
 pub(super) fn loads(record: &Record, c: &Candidate, title: &str) -> Markup {
     let figures = record.problem.resolved.loads.as_ref().and_then(|loads| {
@@ -53,10 +56,12 @@ fn words(figures: &LoadFigures) -> String {
     };
     let range =
         if figures.full_turn { "a turn" } else { "all that the crank reaches, 1° short of each toggle" };
-    let power = if figures.power_mean == 0.0 {
-        String::new()
-    } else {
+    // Of conservative loads the mean is rounding.
+    let is_mean = figures.torque_mean.abs() > ROUNDING * figures.torque_rms;
+    let power = if is_mean && figures.power_mean != 0.0 {
         format!(" {} W on average.", significant(figures.power_mean, 4))
+    } else {
+        String::new()
     };
     minus(&format!(
         "Torque on the crank over {range}: peak {}, {} N m rms.{power} Largest shaking force {}. Friction is left out.",

@@ -103,14 +103,14 @@ fn the_fit_is_the_least_of_its_neighbours() {
     // Of the rates that can be bought the best is taken, with a free length of its own.
     let of = |rates: Vec<f64>| {
         let bought = SpringRequest { rates, ..request.clone() };
-        let found = balance_by_spring(&four_bar(), Unit::Mm, &loads, &bought).expect("a spring");
+        let found = balance_by_spring(&four_bar(), Unit::Mm, &loads, &bought).ok()?;
         let Spring::Extension { rate, free_length, .. } = found.spring else { panic!("an extension spring") };
-        (rate, rms(rate, free_length))
+        Some((rate, rms(rate, free_length)))
     };
     let all = [0.2 * rate, 1.1 * rate, 5.0 * rate];
-    let (taken, left) = of(all.to_vec());
+    let (taken, left) = of(all.to_vec()).expect("one of them helps");
     assert!(all.contains(&taken) && left >= best * (1.0 - 1e-12), "{taken} of {rate}");
-    assert!(all.iter().all(|one| of(vec![*one]).1 >= left * (1.0 - 1e-12)));
+    assert!(all.iter().filter_map(|one| of(vec![*one])).all(|(_, other)| other >= left * (1.0 - 1e-12)));
 }
 
 #[test]
