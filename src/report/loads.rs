@@ -279,7 +279,7 @@ fn torque_chart(figures: &LoadFigures, toggles_deg: &[f64]) -> Option<(Chart, Ab
 pub(super) fn torque_svg(figures: &LoadFigures) -> Option<String> {
     let (chart, abscissa) = torque_chart(figures, &[])?;
     let mut canvas = Canvas::default();
-    chart.draw(&mut canvas, &abscissa, Area { x: 0.0, y: 0.0, width: FULL, height: HEIGHT });
+    chart.draw(&mut canvas, &abscissa, Area { x: 0.0, y: 0.0, width: FULL - INSET, height: HEIGHT });
     Some(canvas.document(
         FULL,
         HEIGHT + 4.0,
