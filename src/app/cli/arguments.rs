@@ -376,7 +376,7 @@ pub struct Build {
     /// Material around a hole [default: as much as its diameter]
     #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = positive)]
     pub margin: Option<f64>,
-    /// Take the diameters of joints, thicknesses of plates, pins and rims from this file, in place of the table [shop] of a linkage file
+    /// Take the diameters of joints, thicknesses of plates, pins and rims from this file, in place of the table `[shop]` of a linkage file
     #[arg(long, value_name = "FILE")]
     pub shop: Option<PathBuf>,
     /// The standard deviation of every dimension [default: 0.1 mm, without a unit a thousandth of the longest link]
@@ -536,7 +536,7 @@ pub struct Export {
     /// Set a size or the scale, e.g. --set hole_mm=4
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = |text: &str| pair(text, "hole_mm=4"))]
     pub set: Vec<(String, String)>,
-    /// Take the diameters of joints, thicknesses of plates, pins and rims from this file, in place of the table [shop] of a linkage file
+    /// Take the diameters of joints, thicknesses of plates, pins and rims from this file, in place of the table `[shop]` of a linkage file
     #[arg(long, value_name = "FILE")]
     pub shop: Option<PathBuf>,
     /// Write it to this file [default: to standard output]

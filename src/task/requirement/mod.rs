@@ -350,7 +350,7 @@ pub(crate) struct RawRequire {
     /// target with free timing, unless `[design]` bounds a length, extent_max is given or the pivots lie too far out; else any.
     pub longest_max: Option<LengthOrAny>,
     /// The greatest size of the torque on the crank, N m, under the loads of the problem and at their speed: over a full turn of a
-    /// crank that turns fully, else between the crank angles used. Needs [loads].
+    /// crank that turns fully, else between the crank angles used. Needs the table `[loads]`.
     pub peak_torque_max: Option<Number>,
     /// The distance between the ends of a slider-crank's slider: a length, or [least, greatest]. The crank turns fully.
     pub stroke: Option<Bounds>,
