@@ -6,6 +6,7 @@ const LABELS: Record<string, [label: string, row?: string]> = {
   input: ["the crank turns fully", "input"],
   stroke: ["stroke of the slider"],
   time_ratio: ["time ratio of the slider's ways"],
+  peak_torque_max: ["greatest torque on the crank"],
   longest_max: ["longest link", "longest link, P included"],
   extent_max: ["whole linkage in motion", "diagonal of the motion's box"],
   transmission_deg_min: ["least transmission angle", "worst transmission angle, °"],
