@@ -1,6 +1,7 @@
 //! `sweep`: many problems that are one problem with different values of some keys.
 
-use super::arguments::{Sweep, SweepMerge, SweepPlan, SweepRun};
+pub mod arguments;
+
 use super::inputs::RESULTS;
 use super::progress::Shown;
 use super::{Ended, interrupt, refuse, refuse_at, terminal};
@@ -8,6 +9,7 @@ use crate::app::sweep::{How, PlanOptions, SweepError, merge, plan, run_missing, 
 use crate::files::diagnostic::escaped;
 use crate::files::sweep_file;
 use crate::report::text::grouped;
+use arguments::{Sweep, SweepMerge, SweepPlan, SweepRun};
 use std::path::{Path, PathBuf};
 
 /// Runs the command.
