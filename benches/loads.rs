@@ -1,12 +1,16 @@
 //! Loads of a six-bar: torque and all joint forces at 3,600 crank angles, and the figures over a turn. Torques by power balance and
-//! by Newton-Euler are asserted to agree before they are timed.
+//! by Newton-Euler are asserted to agree before they are timed. The spring that balances an arm over 90 degrees is asserted to be the
+//! textbook's.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use linkwright::analysis::CrankMotion;
 use linkwright::internals::files::linkage_file;
-use linkwright::internals::mechanism::Unit;
+use linkwright::internals::mechanism::loads::balance::{SpringEnds, SpringRequest, balance_by_spring};
 use linkwright::internals::mechanism::loads::{
     BodyMass, Force, ForceVector, LoadedLinkage, Loads, Mass, Place, Quantity, Spring,
+};
+use linkwright::internals::mechanism::{
+    AssemblyMode, CouplerSide, FourBar, Linkage, NaturalCoordinates, Unit,
 };
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -67,5 +71,35 @@ fn loads(c: &mut Criterion) {
     c.bench_function("figures of a six-bar over a turn", |b| b.iter(|| black_box(&loaded).figures(input)));
 }
 
-criterion_group!(benches, loads);
+/// An arm of 300 mm with 1 kg at its end, as the crank of a four-bar, in a spring between its middle and a point 120 mm above its pivot:
+/// k a b = m g r.
+fn balance(c: &mut Criterion) {
+    let linkage = FourBar::new(NaturalCoordinates {
+        crank_pivot: [0.0, 0.0],
+        follower_pivot: [500.0, 0.0],
+        crank: 300.0,
+        coupler: 520.0,
+        follower: 400.0,
+        crank_side: 100.0,
+        follower_side: 450.0,
+        assembly: AssemblyMode::Plus,
+        side: CouplerSide::Plus,
+    });
+    let linkage = Linkage::FourBar(linkage.expect("lengths"));
+    let mass = Mass::Given { mass_kg: 1.0, center: [0.3, 0.0], inertia_kg_m2: 0.0 };
+    let bodies = vec![BodyMass { body: "crank".into(), mass }];
+    let loads = Loads { gravity: [0.0, -9.81], bodies, ..Loads::default() };
+    let request = SpringRequest {
+        ends: SpringEnds::Places([Place::OnBody("crank".into(), [0.15, 0.0]), Place::Fixed([0.0, 0.12])]),
+        range: [-20.0, 70.0].map(f64::to_radians),
+        rates: Vec::new(),
+        least_free_length: 0.0,
+    };
+    let spring = || balance_by_spring(&linkage, Unit::Mm, &loads, &request).expect("a spring");
+    let Spring::Extension { rate, .. } = spring().spring else { panic!("an extension spring") };
+    assert!((rate - 9.81 * 0.3 / (0.15 * 0.12)).abs() < 1e-6, "{rate}");
+    c.bench_function("a spring over 90 degrees", |b| b.iter(spring));
+}
+
+criterion_group!(benches, loads, balance);
 criterion_main!(benches);

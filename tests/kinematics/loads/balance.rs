@@ -7,7 +7,6 @@ use linkwright::internals::mechanism::loads::balance::{
 use linkwright::internals::mechanism::loads::{BodyMass, LoadedLinkage, Loads, Mass, Place, Spring};
 use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar, Linkage, Unit};
 use std::f64::consts::{PI, TAU};
-use std::time::Instant;
 
 const G: f64 = 9.81;
 
@@ -37,9 +36,7 @@ fn places(from: Place, to: Place, range_deg: [f64; 2]) -> SpringRequest {
 fn a_lamp_arm_is_balanced_exactly_by_the_textbooks_spring_without_a_free_length() {
     // From b = 100 mm on the arm to a = 60 mm above the pivot: k a b = m g r.
     let request = places(Place::Joint("C".into()), Place::Fixed([0.0, 0.06]), [-60.0, 80.0]);
-    let begun = Instant::now();
     let found = balance_by_spring(&four_bar(), Unit::Mm, &lamp(), &request).expect("a spring");
-    assert!(begun.elapsed().as_millis() < 100, "{:?}", begun.elapsed());
     let Spring::Extension { rate, free_length, .. } = &found.spring else { panic!("an extension spring") };
     let exact = 2.0 * G * 0.08 / (0.1 * 0.06);
     assert!((rate / exact - 1.0).abs() < 1e-9 && *free_length < 1e-9, "{rate} of {exact}, {free_length}");

@@ -143,6 +143,47 @@ fn a_piston_has_the_inertia_torque_of_the_literature() {
     }
 }
 
+/// F. P. Beer, E. R. Johnston, D. Mazurek, Vector Mechanics for Engineers: Statics, 12th edition, problems 10.21 (a force of 4 kN on
+/// the piston takes a couple of 121.8 N m at 30 degrees) and 10.22 (a couple of 100 N m at 60 degrees takes 2.05 kN), crank 50 mm,
+/// rod 200 mm.
+#[test]
+fn the_engine_of_beer_and_johnston_is_held_by_its_printed_couples() {
+    let torque = |force: f64, deg: f64| {
+        let loads = Loads { forces: vec![push(Place::Joint("D".into()), [-force, 0.0])], ..Loads::default() };
+        let loaded = LoadedLinkage::new(&slider_crank(50.0, 200.0), Unit::Mm, &loads).expect("names");
+        let still = CrankMotion::steady(0.0);
+        loaded.at(deg.to_radians(), still, &mut loaded.scratch()).expect("it closes").torque
+    };
+    assert!((torque(4000.0, 30.0).abs() - 121.8).abs() < 0.05, "{}", torque(4000.0, 30.0));
+    let force = 100.0 / torque(1000.0, 60.0).abs();
+    assert!((force - 2.05).abs() < 0.005, "{force}");
+}
+
+/// D. B. Marghitu, Mechanisms and Robots Analysis with MATLAB (Springer 2009), section 4.6: a slider-crank of twice 1 m at 45 degrees and
+/// 1 rad/s, 1 kg each, g = 10 m/s^2, 100 N on the slider. The rod bears F12 = (-(400 + 7 sqrt 2)/4, 5 (84 + sqrt 2)/4) N from the crank.
+#[test]
+fn marghitus_slider_crank_has_its_printed_force() {
+    let inertia = 0.083_341_7;
+    let loads = Loads {
+        gravity: [0.0, -10.0],
+        bodies: vec![
+            mass("crank", 1.0, [0.5, 0.0], inertia),
+            mass("coupler", 1.0, [0.5, 0.0], inertia),
+            mass("block", 1.0, [0.0, 0.0], 1.666_67e-5),
+        ],
+        forces: vec![push(Place::Joint("D".into()), [100.0, 0.0])],
+        ..Loads::default()
+    };
+    let loaded = LoadedLinkage::new(&slider_crank(1.0, 1.0), Unit::M, &loads).expect("names");
+    let at = loaded.at(PI / 4.0, CrankMotion::steady(1.0), &mut loaded.scratch()).expect("it closes");
+    let of_pin = at.forces.iter().find(|force| force.at == "C").expect("a pin");
+    assert_eq!((of_pin.on.as_str(), of_pin.from.as_str()), ("crank", "coupler"));
+    let [x, y] = of_pin.force.expect("a force");
+    let root = 2_f64.sqrt();
+    assert!((-x + (400.0 + 7.0 * root) / 4.0).abs() < 1e-10, "{x}");
+    assert!((-y - 1.25 * (84.0 + root)).abs() < 1e-10, "{y}");
+}
+
 /// R. L. Norton, Design of Machinery, example 11-3: forces and torque of a four-bar in inches, pounds and blobs (lb s^2/in). Quoted
 /// from memory of the printed table (F12 = -117.65, -107.84; F43x = -1.34 lb; T12 = 243.23 lb in), as the book was not at hand; a
 /// computation with the accelerations that it prints in four or five digits gives -117.66, -107.84, -1.34 and 243.27.
