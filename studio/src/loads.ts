@@ -37,7 +37,7 @@ export class LoadsPanel {
     role: "img",
     "aria-label": "The torque on the crank over its angle",
   });
-  private chart = element("div", { id: "torque", hidden: "" }, [this.svg]);
+  private chart = element("div", { id: "torque" }, [this.svg]);
   private cursor = shape("path", { class: "cursor" });
   private drawn = shape("g", { class: "springs" });
   private springs: SpringAsk[] = [];
@@ -71,7 +71,6 @@ export class LoadsPanel {
     const take = (event: PointerEvent) => this.isPicking && this.take(event);
     board.svg.addEventListener("pointerdown", take, true);
     document.addEventListener("keydown", (event: KeyboardEvent) => event.key === "Escape" && this.pick(false));
-    document.getElementById("stage")?.after(this.chart);
     new ResizeObserver(() => this.draw()).observe(this.chart);
   }
 
@@ -104,16 +103,13 @@ export class LoadsPanel {
   async show() {
     const chosen = this.host.chosen();
     this.place.hidden = !chosen;
-    if (!(this.isOpen && chosen)) this.chart.hidden = true;
+    if (!(this.isOpen && chosen)) this.chart.remove();
     this.pose();
     if (!chosen || !this.isOpen) return;
     const [weight_kg, rpm] = this.fields.map(({ valueAsNumber }) => valueAsNumber || 0);
     const ask = { of: api.drawn(chosen), weight_kg, rpm, springs: this.springs };
     const key = JSON.stringify(ask);
-    if (key === this.key) {
-      this.chart.hidden = this.torque.length === 0;
-      return;
-    }
+    if (key === this.key) return this.placeChart();
     this.key = key;
     let found: Loaded = { words: "", torque: [] };
     try {
@@ -124,8 +120,14 @@ export class LoadsPanel {
     if (this.key !== key) return;
     this.words.textContent = found.words;
     this.torque = found.torque as Point[][];
-    this.chart.hidden = this.torque.length === 0;
+    this.placeChart();
     this.draw();
+  }
+
+  /** The chart stands under the board while there is a torque to see: nobody else meets a second drawing there. */
+  private placeChart() {
+    if (this.torque.length === 0 || !this.isOpen) return this.chart.remove();
+    if (!this.chart.isConnected) document.getElementById("stage")?.after(this.chart);
   }
 
   /** Begins a spring, or gives it up. */

@@ -1447,7 +1447,7 @@ export interface Loaded {
    */
   torque: [number, number][][];
   /**
-   * What `linkwright analyze` says of them, on one line.
+   * The sentences of `linkwright analyze` on them, on one line.
    */
   words: string;
 }

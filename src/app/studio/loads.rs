@@ -1,4 +1,4 @@
-//! What turns a linkage: the torque on its crank with a weight at P and springs, for a chart under the board.
+//! Computes the torque on a linkage's crank with a weight at P and springs, for a chart under the board.
 
 use super::details::{DetailsError, Source};
 use super::house::House;
@@ -58,7 +58,7 @@ pub enum End {
 /// The loads of a linkage over the range of its crank.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Loaded {
-    /// What `linkwright analyze` says of them, on one line.
+    /// The sentences of `linkwright analyze` on them, on one line.
     pub words: String,
     /// The torque on the crank, N m, at crank angles in degrees: [angle, torque] along each stretch without a gap.
     pub torque: Vec<Vec<[f64; 2]>>,

@@ -34,7 +34,7 @@ pub struct Balance {
     /// The distance of the masses from the fixed pivots, in the linkage's unit
     #[arg(long, value_name = "R", requires = "masses", allow_negative_numbers = true, value_parser = finite)]
     pub radius: Option<f64>,
-    /// What the masses make even over a turn
+    /// The quantity that the masses even out over a turn
     #[arg(long, value_enum, default_value = "torque", requires = "masses")]
     pub even: Even,
     /// Speed of the crank for the masses, rad/s
@@ -54,7 +54,7 @@ pub struct Balance {
     pub json: bool,
 }
 
-/// What counter-masses make even.
+/// The quantity that counter-masses even out over a turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Even {
     /// The torque on the crank.

@@ -19,7 +19,7 @@ pub enum BalanceError {
     /// The range of crank angles is empty, or wider than a turn.
     #[error("the range of crank angles has to be wider than 0 and at most 360 degrees: give two angles")]
     BadRange,
-    /// There is nothing to balance.
+    /// The crank needs no torque.
     #[error("the crank needs no torque there without a balance: give loads, such as gravity and masses")]
     NothingToBalance,
     /// No spring between these places lessens the torque.
