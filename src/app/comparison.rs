@@ -51,9 +51,6 @@ enum NotMeasured {
     /// The outputs of the function are none that the kind has.
     #[error("{} has {what}", kind.with_article())]
     WithoutOutput { kind: LinkageKind, what: &'static str },
-    /// Some crank angles of the target are free, others given.
-    #[error("a target with some free crank angles is compared with four-bars alone, and this is {}", kind.with_article())]
-    PartlyTimed { kind: LinkageKind },
     #[error("it cannot be assembled at every {noun} of {name}")]
     NotAssembled { name: String, noun: &'static str },
 }
@@ -119,13 +116,10 @@ impl Target {
     fn nearest(&self, linkage: CrankLinkage, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
         let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| from.factor_to(to));
         let linkage = linkage.scaled(factor)?;
-        let (task, kind) = (self.problem.task(), linkage.kind());
+        let kind = linkage.kind();
         let output = self.problem.spec().task.output.as_ref().map(|output| output.output);
         if let Some(output) = output.filter(|output| !output.is_of(kind)) {
             return Err(NotMeasured::WithoutOutput { kind, what: output.missing() });
-        }
-        if task.is_partly_timed() && kind != LinkageKind::FourBar {
-            return Err(NotMeasured::PartlyTimed { kind });
         }
         nearest_positions(&self.problem, linkage)
             .and_then(|(crank_deg, assemblies)| assess(&self.problem, linkage, &crank_deg, &assemblies))

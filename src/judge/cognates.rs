@@ -1,4 +1,5 @@
-//! Roberts cognates of the candidates: the other linkages of the same curve, judged under the problem.
+//! Cognates of the candidates: the other linkages of the same curve, judged under the problem. Four-bars have two (Roberts), a
+//! slider-crank has one ([`crate::mechanism::slider_crank`]).
 //!
 //! With free timing both cognates meet every point with the candidate's error. With prescribed timing only one whose
 //! crank turns in step with the candidate's does. With z = (P - C)/(D - C) that is the cognate at B, driven at G = A +
@@ -10,14 +11,15 @@
 //! - offset fixed: it keeps the timing only if 1 - z is real and positive (P on the line C-D, on the side of C).
 //!
 //! Its coupler turns in step with the candidate's follower and its follower with the candidate's coupler, so that its
-//! transmission angle is the candidate's too; it can only be better in size and place.
+//! transmission angle is the candidate's too; it can only be better in size and place. The crank of a slider-crank's cognate turns
+//! in step with the candidate's coupler, so that it is one of free timing alone.
 
 use super::rank::{exact_sum_sq, severity, size};
 use super::unwrapped::unwrapped;
 use crate::judge::assess::assess_on_curve;
 use crate::mechanism::four_bar::cognate::{Cognate, OriginalLink};
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, CrankLinkage};
+use crate::mechanism::{AssemblyMode, CrankLinkage, SliderCrank, SliderLinkage};
 use crate::record::{Alternative, Candidate};
 use crate::task::Problem;
 use crate::task::{AngleOffset, Timing};
@@ -124,7 +126,7 @@ pub fn not_met(candidate: &Candidate) -> Vec<String> {
     candidate.requirements.iter().filter(|r| !r.met).map(|r| r.name.clone()).collect()
 }
 
-/// Returns the cognates of a candidate that meet the points as it does, [at A, at B], each judged under the problem;
+/// Returns the cognates of a candidate that meet the points as it does, of a four-bar [at A, at B], each judged under the problem;
 /// they share the distances to the whole curve, since the curve is the same. A motion has none: the couplers of cognates
 /// turn differently.
 pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
@@ -134,6 +136,9 @@ pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
     let Some((angle, t1)) = candidate.crank_deg.first().zip(candidate.t1_at.first()) else {
         return Vec::new();
     };
+    if let Some(linkage) = candidate.linkage.slider_crank() {
+        return of_slider_crank(problem, candidate, linkage).into_iter().collect();
+    }
     let Some(linkage) = candidate.linkage.four_bar() else { return Vec::new() };
     let found = linkage.with_assembly(*t1).cognates_at(angle.to_radians());
     let judged = |cognate: Cognate| {
@@ -150,6 +155,28 @@ pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
             .filter(|form| has_error_of(problem, candidate, (&form.linkage, form.error.sum_sq), 1.0))
     };
     found.into_iter().flatten().filter_map(judged).collect()
+}
+
+/// Returns the cognate of a slider-crank of free timing, judged under the problem; `None` if it has none that meets the points as
+/// it does.
+fn of_slider_crank(problem: &Problem, candidate: &Candidate, linkage: &SliderCrank) -> Option<Candidate> {
+    if !matches!(problem.task().timing(), Timing::Free) {
+        return None;
+    }
+    let at = |(deg, t1): (&f64, &AssemblyMode)| {
+        let angle = deg.to_radians();
+        let cognate = linkage.cognate(angle).ok()?;
+        let coupler = candidate.linkage.joints_with(angle, *t1)?.coupler;
+        Some((cognate, (coupler * linkage.coupler_offset()).arg()))
+    };
+    let found: Vec<(SliderCrank, f64)> =
+        candidate.crank_deg.iter().zip(&candidate.t1_at).map(at).collect::<Option<_>>()?;
+    let t1_at = found.iter().map(|(cognate, _)| cognate.assembly()).collect();
+    let (cognate, angles) = (found.first()?.0, found.iter().map(|(_, angle)| *angle).collect());
+    let (crank_deg, t1_at) = unwrapped(problem, cognate, angles, t1_at);
+    let to_curve = Some(candidate.error.to_curve);
+    assess_on_curve(problem, cognate, (&crank_deg, &t1_at), None, to_curve)
+        .filter(|form| has_error_of(problem, candidate, (&form.linkage, form.error.sum_sq), 1.0))
 }
 
 /// Returns the cognate's crank angles, radians, and assemblies at the candidate's positions.

@@ -5,7 +5,8 @@
 //! linkage: from the answers found so far, then in rounds of fresh starts, until the best has been reached `HITS`
 //! times, `QUIET` rounds have brought nothing better, or the evaluations that the caller allows are used.
 //!
-//! Of six-bars and eight-bars, whose plates may not stack, no second search follows: those beyond the limits of a buildable linkage
+//! Where linkages with a slider are asked for, they are searched for anew under the tightened limits, and four-bars only where they
+//! are asked for too. Of six-bars and eight-bars, whose plates may not stack, no second search follows: those beyond the limits of a buildable linkage
 //! are fitted once more within them.
 //!
 //! A four-bar on the limit of its link ratio is nearly a linkage with a slider, the limit of longer and longer links. So
@@ -17,7 +18,8 @@ use super::constants::buildable::{
     WARM, WARM_SHARE,
 };
 use super::driver::{Allowance, Standing, Strategy, drive, in_parallel};
-use super::multistart::{Fitted, LONG_FIT, RoundOutcome, fit_and_judge, judged, polish, round};
+use super::fit_state::Fitted;
+use super::multistart::{LONG_FIT, RoundOutcome, fit_and_judge, judged, polish, round};
 use super::plan::Place;
 use super::starts::Starts;
 use super::states::SearchState;
@@ -28,7 +30,7 @@ use crate::judge::loosen::judged_under;
 use crate::judge::rank::{chosen, compare};
 use crate::judge::warm::{start_at, start_beside};
 use crate::judge::warnings::{GREATEST_LINK_RATIO, LEAST_TRANSMISSION_DEG, is_serious, warnings};
-use crate::mechanism::LinkageType;
+use crate::mechanism::{LinkageKind, LinkageType};
 use crate::record::{Candidate, Evaluations, WarningKind};
 use crate::task::Problem;
 use crate::task::requirement::RequirementKind;
@@ -91,6 +93,20 @@ pub fn buildable(
     }
     let search = search && !several_loops;
     outcome.searched |= search;
+    let design = &problem.spec().design;
+    let has_sliders = design.mechanism.iter().any(|kind| kind.has_slider());
+    let searches_four_bars = design.searches(LinkageKind::FourBar);
+    if search && has_sliders && !context.stopped() {
+        let mut spec = problem.spec().clone();
+        tighten(&mut spec);
+        let share = if searches_four_bars { allowance / 2 } else { allowance };
+        if let Ok(tight) = Problem::new(spec) {
+            let (found, evaluations) = sliders::of_the_design(context.of(&tight), share);
+            outcome.evaluations += evaluations;
+            found.iter().filter_map(|c| assess_again(problem, c)).for_each(|candidate| offer(&candidate));
+        }
+    }
+    let search = search && searches_four_bars;
     let place = Place::of(problem);
     let tight = Problem::new(tightened(problem.spec())).ok();
     if search
@@ -101,8 +117,9 @@ pub fn buildable(
             ranked.iter().chain(others).filter_map(|c| place.there(&image, c)).collect();
         let observer = |progress: &Progress| place.report(context, progress);
         let within = Context { observer: &observer, ..context.of(&tight) };
-        let (found, evaluations) = second_search(within, &known, allowance);
-        outcome.evaluations = evaluations;
+        let left = allowance.saturating_sub(outcome.evaluations.objective);
+        let (found, evaluations) = second_search(within, &known, left);
+        outcome.evaluations += evaluations;
         let until_stopped = found.iter().take_while(|_| !context.stopped());
         until_stopped.filter_map(|c| place.back(problem, c)).for_each(|candidate| offer(&candidate));
     }

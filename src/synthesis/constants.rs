@@ -85,6 +85,8 @@ pub mod sliders {
     /// Of a function: offsets that are drawn in a round, and the crank's offsets of the first one.
     pub const OFFSETS: usize = 40;
     pub const TURNS: usize = 12;
+    /// Where a range of it is free: scales that are drawn in a round.
+    pub const SCALES: usize = 8;
     /// Batches of families of exact answers.
     pub const FAMILY_BATCHES: u64 = 6;
     /// Candidates fitted on to the last digit at the end, at least, and the effort of each.

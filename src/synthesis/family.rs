@@ -37,12 +37,14 @@ pub(super) fn freedom_within(problem: &Problem, kind: LinkageKind, bounds: &[(f6
     let free = bounds.iter().filter(|(low, high)| low < high).count();
     if let Some(outputs) = problem.task().body().filter(|_| problem.is_function()) {
         let pairs = problem.task().len();
+        let of_ranges = outputs.ranges().free().into_iter().filter(|is_free| *is_free).count();
+        let free = free + of_ranges;
         if kind != LinkageKind::InvertedSliderCrank || !outputs.is_of_places() {
             return free.saturating_sub(pairs);
         }
         // The place of the block depends on a g and g^2 + a^2 - h^2 alone.
         let offsets = [problem.offset_is_free(), outputs.given_frame(0.0).is_none()];
-        let of_place = 2 + offsets.into_iter().filter(|is_free| *is_free).count();
+        let of_place = 2 + of_ranges + offsets.into_iter().filter(|is_free| *is_free).count();
         return free.saturating_sub(pairs.min(of_place));
     }
     free.saturating_sub(equations(problem))

@@ -19,6 +19,7 @@
 //! | `ellipse` | the ellipse through the points of a closed target that is nearly one |
 //! | [`errors_without`] | the error that is left without each requirement that is active at the best candidate |
 //! | `family` | families of exact answers, along which the transmission angle is raised |
+//! | [`fit_state`] | the unknowns of a linkage in the fits of its kind, and the end of such a fit: what polishes of all kinds have in common |
 //! | [`frame`] | the canonical frame in which problems of free timing are searched, and the way back of their candidates |
 //! | [`free`] | multistart search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt fits on the torus, and a stopping rule by repeated hits of the best answer |
 //! | [`front`] | the front of a problem: the trade-off between error, transmission angle, extent and other figures, by fits under tightened limits |
@@ -65,6 +66,7 @@ pub mod dyads;
 mod ellipse;
 pub mod errors_without;
 mod family;
+pub mod fit_state;
 pub(crate) mod fixture;
 mod frame;
 pub mod free;

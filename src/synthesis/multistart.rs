@@ -10,6 +10,7 @@ pub use super::constants::multistart::{LONG_FIT, SHORT_FIT};
 
 use super::Context;
 use super::constants::multistart::{LONG, SCREEN, SETTLING, SHORT, SUGGESTED_LONG, SUGGESTED_SHORT};
+use super::fit_state::{FitState, Fitted};
 use super::polish::reserve;
 use super::starts::Starts;
 use crate::judge::assess::assess_on_curve;
@@ -156,10 +157,10 @@ pub(super) fn by_merit<T>(ends: &mut Vec<(f64, T)>, keep: usize) {
 
 /// Fits starts in parallel, judges the ends, and adds them to the candidates and their cost to the evaluations. Once the
 /// search is stopped, no further fit begins, and only a few ends are judged.
-pub(super) fn fit_and_judge<S: Send>(
+pub(super) fn fit_and_judge<S: Send, E: FitState>(
     context: Context<'_>,
     starts: Vec<S>,
-    fit: impl Fn(S) -> Fitted + Sync,
+    fit: impl Fn(S) -> Fitted<E> + Sync,
     found: &mut Vec<Candidate>,
     evaluations: &mut Evaluations,
 ) {
@@ -172,7 +173,7 @@ pub(super) fn fit_and_judge<S: Send>(
             }
             let fit = fit(start);
             let end = fit.end.filter(|_| judging.may_go_on());
-            (end.and_then(|end| judged(context.problem, &end)), fit.evaluations)
+            (end.and_then(|end| end.judged(context.problem)), fit.evaluations)
         })
         .collect();
     for (candidate, used) in fitted {
@@ -214,22 +215,6 @@ impl FitUser for Screening<'_> {
         fit.constraints(&x, self.positions, &mut |value, _| lack += (-value).max(0.0));
         Some((cost, lack))
     }
-}
-
-/// The end of a local fit.
-#[derive(Clone, Debug)]
-pub struct Fitted {
-    /// The end point; `None` if it could not start or was given up.
-    pub end: Option<Start>,
-    /// The merit function, cost plus violation, for comparing ends.
-    pub merit: f64,
-    /// Evaluations of the cost.
-    pub evaluations: u64,
-}
-
-impl Fitted {
-    /// The end of a fit that cannot start.
-    pub(super) const NONE: Fitted = Fitted { end: None, merit: f64::INFINITY, evaluations: 0 };
 }
 
 /// Fits from a start under all requirements, with at most `evaluations` of the cost (at least one).

@@ -5,10 +5,10 @@ use super::{Budget, Context};
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, CrankLinkage, FourBar, InputRange, LoopJoints};
+use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, CrankLinkage, InputRange, LoopJoints};
 use crate::task::forms::design_space::Shape;
 use crate::task::forms::rows::assembly_of;
-use crate::task::forms::timed::TimedPathFit;
+use crate::task::forms::timed::ATTACHED;
 use crate::task::forms::torus::Positions;
 use crate::task::{AngleOffset, Body, Problem, Setting, Timing};
 use std::f64::consts::TAU;
@@ -19,8 +19,6 @@ use std::sync::atomic::AtomicBool;
 /// Free timing: the nearest point of the circuit that the linkage's own t1 is on (of a rocking Grashof linkage the
 /// better of its two circuits). Prescribed timing: the prescribed angles, with the offset and the direction that give
 /// the least sum of squares if they are free, on the linkage's own t1.
-///
-/// Partly timed targets are met by four-bars alone.
 pub fn nearest_positions(
     problem: &Problem,
     linkage: impl Into<CrankLinkage>,
@@ -29,9 +27,7 @@ pub fn nearest_positions(
     match problem.task().timing() {
         Timing::Free if problem.task().body().is_some() => of_body(problem, linkage),
         Timing::Free => free(problem, linkage),
-        Timing::Prescribed { .. } if problem.task().is_partly_timed() => {
-            partly_timed(problem, linkage.four_bar()?)
-        }
+        Timing::Prescribed { .. } if problem.task().is_partly_timed() => partly_timed(problem, linkage),
         Timing::Prescribed { offset, .. } => prescribed(problem, linkage, *offset),
     }
 }
@@ -41,7 +37,7 @@ pub fn nearest_positions(
 const BESIDE_SAMPLE_DEG: f64 = 7.5;
 
 /// As [`prescribed`] of the timed targets, with the others where the coupler point is nearest between their neighbours.
-fn partly_timed(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+fn partly_timed(problem: &Problem, linkage: &CrankLinkage) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let task = problem.task();
     let mut spec = problem.spec().clone();
     let timed: Vec<usize> = (0..task.len()).filter(|j| !task.is_untimed(*j)).collect();
@@ -60,21 +56,17 @@ fn partly_timed(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<A
     }
     let whole = Problem::new(spec).ok()?;
     let Timing::Prescribed { offset, .. } = whole.task().timing() else { return None };
-    let (crank_deg, _) = prescribed(&whole, &linkage.into(), *offset)?;
+    let (crank_deg, _) = prescribed(&whole, linkage, *offset)?;
     let written = &problem.spec().task.timing.as_ref()?.crank_deg;
     let steps = (crank_deg[crank_deg.len() - 1] - crank_deg[0])
         * (written[*timed.last()?] - written[*timed.first()?]);
     let direction = if steps < 0.0 { -1.0 } else { 1.0 };
     let base = (crank_deg[0] - direction * written[timed[0]]).to_radians();
-    let side = linkage.side();
-    let setting = Setting { aim: None, assembly: linkage.assembly(), direction, side };
-    let space = problem.space(side);
-    let design = space.coordinates(&Shape::from(linkage), if problem.offset_is_free() { base } else { 0.0 });
-    let positions = TimedPathFit::new(problem, setting)?.attached(&design)?;
     let distance = |j: usize, deg: f64| {
-        let joints = linkage.position_with(deg.to_radians(), linkage.assembly()).joints();
-        joints.map_or(f64::INFINITY, |joints| (joints.coupler_point - task.points()[j]).norm())
+        let at = linkage.joints_with(deg.to_radians(), linkage.assembly());
+        at.map_or(f64::INFINITY, |at| (at.joints.coupler_point - task.points()[j]).norm())
     };
+    let given: Vec<f64> = written.iter().map(|deg| base.to_degrees() + direction * deg).collect();
     let refined = |j: usize, deg: f64| {
         let (mut low, mut high) = (deg - BESIDE_SAMPLE_DEG, deg + BESIDE_SAMPLE_DEG);
         for _ in 0..100 {
@@ -87,15 +79,18 @@ fn partly_timed(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<A
         let middle = 0.5 * (low + high);
         if distance(j, middle) <= distance(j, deg) { middle } else { deg }
     };
-    let all = positions.iter().zip(written).enumerate().map(|(j, ([e, _], deg))| {
-        let guess = base.to_degrees() + direction * deg;
-        if task.is_untimed(j) {
-            refined(j, guess + wrapped(e.arg() - guess.to_radians()).to_degrees())
-        } else {
-            guess
+    let at_target = |j: usize| {
+        if !task.is_untimed(j) {
+            return Some(given[j]);
         }
-    });
-    Some((all.collect(), vec![linkage.assembly(); task.len()]))
+        let [from, to] = task.between_timed(&given, 360.0, j)?;
+        let step = (to - from) / ATTACHED as f64;
+        let samples = (1..ATTACHED).map(|i| from + step * i as f64);
+        let nearest = samples.min_by(|one, other| distance(j, *one).total_cmp(&distance(j, *other)))?;
+        Some(refined(j, nearest))
+    };
+    let all: Option<Vec<f64>> = (0..task.len()).map(at_target).collect();
+    Some((all?, vec![linkage.assembly(); task.len()]))
 }
 
 /// Returns a crank angle on each circuit that the linkage's own t1 can be on.

@@ -1,4 +1,4 @@
-//! The offer of Roberts cognates beside the candidates of a search.
+//! The offer of cognates beside the candidates of a search.
 
 use super::Context;
 use crate::judge::assess::assess_again;

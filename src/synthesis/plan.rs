@@ -418,7 +418,7 @@ impl Run<'_> {
     /// Runs the polish that the objective and the tolerances ask for.
     fn finish(&mut self) {
         let Found { candidates, evaluations, .. } = &mut self.found;
-        improve(self.context, candidates, evaluations, self.limit);
+        improve::<Start>(self.context, candidates, evaluations, self.limit);
         self.found.reason = self.context.stop_reason().unwrap_or(self.found.reason);
     }
 }

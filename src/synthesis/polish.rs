@@ -9,7 +9,8 @@ use super::constants::polish::{
     BASINS, EVALUATIONS, FUNCTION_BASINS, FUNCTION_HOPPED, HOP, HOPPED, HOPS, INSIDE, LEAST_BASINS, MAX_HOPS,
     QUIET_HOPS, SAME_DEVIATION, SAME_START, SHARE, STEPS,
 };
-use super::multistart::{Fitted, by_merit, fit_and_judge};
+use super::fit_state::{FitState, Fitted};
+use super::multistart::{by_merit, fit_and_judge, judged};
 use crate::judge::error::structural_error;
 use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
 use crate::judge::warm::start_at;
@@ -86,21 +87,26 @@ fn measures(problem: &Problem) -> Vec<f64> {
 /// tolerances, is below `enough`.
 ///
 /// The merit is that deviation, plus the violation of the requirements in sizes of the target.
-pub fn deviation_polish(context: Context<'_>, start: &Start, enough: f64, evaluations: u64) -> Fitted {
+fn deviation_polish<S: FitState>(
+    context: Context<'_>,
+    start: &S,
+    enough: f64,
+    evaluations: u64,
+) -> Fitted<S> {
     let tolerances = measures(context.problem);
-    convex(context, start, &Goal::MaxDeviation { tolerances: &tolerances }, enough, evaluations).0
+    start.convex(context, &Goal::MaxDeviation { tolerances: &tolerances }, enough, evaluations).0
 }
 
 /// Brings a start to the optimum of its basin under all requirements: the least largest deviation, or the least sum of
 /// squares within the tolerances; if these cannot be met, the least largest deviation.
-pub fn finish(context: Context<'_>, start: &Start, evaluations: u64) -> Fitted {
+pub fn finish<S: FitState>(context: Context<'_>, start: &S, evaluations: u64) -> Fitted<S> {
     let problem = context.problem;
     let floor = 1e-3 * exact_objective(problem);
     match (problem.spec().solve.objective, problem.task().has_tolerances()) {
         (Objective::MaxDeviation, _) => deviation_polish(context, start, floor, evaluations),
         (Objective::SumOfSquares, false) => {
             let exact = 1e-6 * exact_cost(problem);
-            convex(context, start, &Goal::SumOfSquares, exact, evaluations).0
+            start.convex(context, &Goal::SumOfSquares, exact, evaluations).0
         }
         (Objective::SumOfSquares, true) => {
             let tolerances = measures(problem);
@@ -112,7 +118,7 @@ pub fn finish(context: Context<'_>, start: &Start, evaluations: u64) -> Fitted {
             }
             let goal = Goal::SumOfSquaresWithin { tolerances: &tolerances };
             let exact = 1e-6 * exact_cost(problem);
-            let (within, deviation) = convex(context, inside, &goal, exact, left);
+            let (within, deviation) = inside.convex(context, &goal, exact, left);
             let spent = nearest.evaluations + within.evaluations;
             if within.end.is_none() || deviation > 1.0 + TOLERANCE_MARGIN {
                 return Fitted { evaluations: spent, ..nearest };
@@ -122,24 +128,50 @@ pub fn finish(context: Context<'_>, start: &Start, evaluations: u64) -> Fitted {
     }
 }
 
-/// Fits by sequential convex programming; returns the end and its largest deviation.
-fn convex(
-    context: Context<'_>,
-    start: &Start,
-    goal: &Goal<'_>,
-    good_enough: f64,
-    evaluations: u64,
-) -> (Fitted, f64) {
-    const NONE: (Fitted, f64) = (Fitted::NONE, f64::INFINITY);
-    let (problem, mut start) = (context.problem, start.clone());
-    let held = &mut start.positions;
-    let settles = !held.is_empty() && !problem.task().is_partly_timed();
-    if settles && !PathFit::new(problem, start.setting).settle(&start.design, held) {
-        return NONE;
+impl FitState for Start {
+    fn of(problem: &Problem, candidate: &Candidate) -> Option<Start> {
+        start_at(problem, candidate)
     }
-    let polishing = Polishing { context, start: &start, goal, good_enough, evaluations };
-    let kept = if problem.task().body().is_some() { Kept::OrderAndBranch } else { Kept::Nothing };
-    on_fit(problem, &start, kept, polishing).unwrap_or(NONE)
+
+    fn judged(&self, problem: &Problem) -> Option<Candidate> {
+        judged(problem, self)
+    }
+
+    fn moved(&self, problem: &Problem, draws: &mut Stream) -> Start {
+        let space = problem.space(self.setting.side);
+        let trust = space.trust(problem.task().size());
+        let mut near = self.clone();
+        for ((value, trust), &(low, high)) in near.design.iter_mut().zip(trust).zip(space.bounds()) {
+            let by = HOP * trust.max(0.1 * value.abs()) * uniform(draws, -1.0, 1.0);
+            *value = (*value + by).max(low).min(high);
+        }
+        let ranges = problem.task().ranges();
+        if !ranges.are_written() {
+            let moved =
+                near.scales.map(|scale| scale * (1.0 + HOP * FRAME_TRUST * uniform(draws, -1.0, 1.0)));
+            near.scales = ranges.nearest(moved);
+        }
+        near
+    }
+
+    fn convex(
+        &self,
+        context: Context<'_>,
+        goal: &Goal<'_>,
+        good_enough: f64,
+        evaluations: u64,
+    ) -> (Fitted, f64) {
+        const NONE: (Fitted, f64) = (Fitted::NONE, f64::INFINITY);
+        let (problem, mut start) = (context.problem, self.clone());
+        let held = &mut start.positions;
+        let settles = !held.is_empty() && !problem.task().is_partly_timed();
+        if settles && !PathFit::new(problem, start.setting).settle(&start.design, held) {
+            return NONE;
+        }
+        let polishing = Polishing { context, start: &start, goal, good_enough, evaluations };
+        let kept = if problem.task().body().is_some() { Kept::OrderAndBranch } else { Kept::Nothing };
+        on_fit(problem, &start, kept, polishing).unwrap_or(NONE)
+    }
 }
 
 /// Fits from a start by sequential convex programming.
@@ -209,7 +241,14 @@ fn held(candidate: &Candidate) -> bool {
 /// distinct candidates are polished in parallel, then starts around the best results, until these bring no improvement
 /// or the tolerances are met. If neither tolerances nor the largest deviation need it, only accepted candidates at an
 /// active limit are polished.
-pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &mut Evaluations, limit: u64) {
+///
+/// Candidates of other kinds than the state's are left as they are.
+pub(super) fn improve<S: FitState>(
+    context: Context<'_>,
+    found: &mut Vec<Candidate>,
+    evaluations: &mut Evaluations,
+    limit: u64,
+) {
     let problem = context.problem;
     let left = limit.saturating_sub(evaluations.objective);
     if left == 0 || found.is_empty() {
@@ -238,8 +277,8 @@ pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &m
         held.sort_by(|one, other| compare(problem, one, other));
         distinct(problem, held, problem.spec().solve.candidates)
     };
-    let starts = worth.iter().filter_map(|candidate| start_at(problem, candidate)).collect();
-    polish_all(context, starts, found, evaluations, limit);
+    let starts = worth.iter().filter_map(|candidate| S::of(problem, candidate)).collect();
+    polish_all::<S>(context, starts, found, evaluations, limit);
     if !(deviation || toleranced) {
         return;
     }
@@ -262,15 +301,15 @@ pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &m
         let mut draws = stream(problem.spec().solve.seed, FIRST_HOP + hop);
         let mut starts = Vec::new();
         for (_, candidate) in near.into_iter().take(hopped) {
-            let Some(start) = start_at(problem, candidate) else { continue };
+            let Some(start) = S::of(problem, candidate) else { continue };
             // The last start is the candidate itself, with the curvature estimate reset.
             for _ in 1..HOPS {
-                starts.push(moved(problem, &start, &mut draws));
+                starts.push(start.moved(problem, &mut draws));
             }
             starts.push(start);
         }
         let before = evaluations.objective;
-        polish_all(context, starts, found, evaluations, limit);
+        polish_all::<S>(context, starts, found, evaluations, limit);
         if evaluations.objective == before {
             return;
         }
@@ -310,27 +349,10 @@ fn by_deviation<'c>(
     measured
 }
 
-/// Returns a random start near another, in its bounds.
-fn moved(problem: &Problem, start: &Start, draws: &mut Stream) -> Start {
-    let space = problem.space(start.setting.side);
-    let trust = space.trust(problem.task().size());
-    let mut near = start.clone();
-    for ((value, trust), &(low, high)) in near.design.iter_mut().zip(trust).zip(space.bounds()) {
-        let by = HOP * trust.max(0.1 * value.abs()) * uniform(draws, -1.0, 1.0);
-        *value = (*value + by).max(low).min(high);
-    }
-    let ranges = problem.task().ranges();
-    if !ranges.are_written() {
-        let moved = near.scales.map(|scale| scale * (1.0 + HOP * FRAME_TRUST * uniform(draws, -1.0, 1.0)));
-        near.scales = ranges.nearest(moved);
-    }
-    near
-}
-
 /// Polishes starts in parallel, each with its share of the rest of `limit`, and adds the results.
-fn polish_all(
+fn polish_all<S: FitState>(
     context: Context<'_>,
-    mut starts: Vec<Start>,
+    mut starts: Vec<S>,
     found: &mut Vec<Candidate>,
     evaluations: &mut Evaluations,
     limit: u64,

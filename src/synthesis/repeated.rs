@@ -58,14 +58,13 @@ impl RepeatedState {
         self.best.as_ref().is_some_and(|best| searched(problem, best) <= exact_cost(problem))
     }
 
-    /// Returns whether the best answer is believed or exact, and as many answers are known as were asked for or come.
-    pub(super) fn is_done(&mut self, context: Context<'_>, stopping: &Stopping) -> bool {
+    /// Returns whether the best answer is believed or exact, and as many answers are known as are wanted or come.
+    pub(super) fn is_done(&mut self, context: Context<'_>, wanted: usize, stopping: &Stopping) -> bool {
         let (hits, near) = self.belief.hits();
         let is_quiet = self.independent >= stopping.quiet_rounds
             && self.evaluations.objective >= stopping.quiet_times * self.reached;
         let is_believed = self.batch >= stopping.least_batches
             && (hits >= stopping.hits || near >= stopping.near_hits || is_quiet && self.best.is_some());
-        let wanted = context.problem.spec().solve.candidates;
         (is_believed || self.is_exact(context.problem))
             && are_enough(
                 context,

@@ -2,7 +2,8 @@
 //! [`super::picks`] and [`super::front`].
 
 use super::constants::tightened::{EVALUATIONS, FINISH, HOPELESS};
-use super::multistart::{Effort, judged, polish_until};
+use super::fit_state::FitState;
+use super::multistart::{Effort, polish_until};
 use super::polish::{finish, reserve};
 use super::{Context, plan, several_loops, sliders};
 use crate::judge::assess::assess_again;
@@ -143,30 +144,45 @@ pub(super) fn fitted(
         let candidate = end.and_then(|end| assess_again(context.problem, &end));
         return Tightened { candidate, evaluations };
     }
-    if from.linkage.kind() != LinkageKind::FourBar {
-        let effort = (effort, evaluations.min(EVALUATIONS), enough);
-        let (end, evaluations) = sliders::refit(within, from, effort);
-        let candidate = end.and_then(|end| assess_again(context.problem, &end));
-        return Tightened { candidate, evaluations };
-    }
-    let Some(start) = start_at(tight, from) else { return out };
-    let fit = polish_until(within, start, effort, evaluations.min(EVALUATIONS), enough);
-    out.evaluations = fit.evaluations;
-    let Some(mut end) = fit.end else { return out };
-    out.candidate = judged(context.problem, &end);
-    let is_accepted = out.candidate.as_ref().is_some_and(|c| c.accepted);
-    let deviations = reserve(tight, u64::MAX) > 0;
-    let max = tight.spec().solve.objective == Objective::MaxDeviation;
-    let most = HOPELESS * tight.task().largest_tolerance().unwrap_or(f64::INFINITY);
-    let is_hopeless = out.candidate.as_ref().is_some_and(|c| c.error.max > most);
-    if deviations && (max || !(is_accepted || is_hopeless)) && !context.stopped() {
-        let left = evaluations.saturating_sub(out.evaluations);
-        let polished = finish(within, &end, (effort.steps as u64 / 4).min(FINISH).min(left));
-        out.evaluations += polished.evaluations;
-        if let Some(better) = polished.end {
-            end = better;
-            out.candidate = judged(context.problem, &end).or(out.candidate);
-        }
+    if from.linkage.kind() == LinkageKind::FourBar {
+        let Some(start) = start_at(tight, from) else { return out };
+        let fit = polish_until(within, start, effort, evaluations.min(EVALUATIONS), enough);
+        out.evaluations = fit.evaluations;
+        out.take(context, within, fit.end, (effort, evaluations));
+    } else {
+        let fit = (effort, evaluations.min(EVALUATIONS), enough);
+        let (end, used) = sliders::refit(within, from, fit);
+        out.evaluations = used;
+        let end = end.and_then(|end| sliders::Start::of(tight, &end));
+        out.take(context, within, end, (effort, evaluations));
     }
     out
+}
+
+impl Tightened {
+    /// Takes the end of a fit `within` the tightened limits, polished for tolerances or the largest deviation where they are
+    /// asked for, judged by the context's problem.
+    fn take<S: FitState>(
+        &mut self,
+        context: Context<'_>,
+        within: Context<'_>,
+        end: Option<S>,
+        (effort, evaluations): (Effort, u64),
+    ) {
+        let (Some(end), tight) = (end, within.problem) else { return };
+        self.candidate = end.judged(context.problem);
+        let is_accepted = self.candidate.as_ref().is_some_and(|c| c.accepted);
+        let deviations = reserve(tight, u64::MAX) > 0;
+        let max = tight.spec().solve.objective == Objective::MaxDeviation;
+        let most = HOPELESS * tight.task().largest_tolerance().unwrap_or(f64::INFINITY);
+        let is_hopeless = self.candidate.as_ref().is_some_and(|c| c.error.max > most);
+        if deviations && (max || !(is_accepted || is_hopeless)) && !context.stopped() {
+            let left = evaluations.saturating_sub(self.evaluations);
+            let polished = finish(within, &end, (effort.steps as u64 / 4).min(FINISH).min(left));
+            self.evaluations += polished.evaluations;
+            if let Some(better) = polished.end {
+                self.candidate = better.judged(context.problem).or(self.candidate.take());
+            }
+        }
+    }
 }

@@ -20,7 +20,6 @@
 //! | `task_spec` | the task as data: a list of targets, written as `path`, as `motion` or as `function` |
 //! | `targets` | the synthesis task: a list of targets for the coupler point and, in poses, for the angle of the body, or for the outputs of a function, with or without crank angles |
 //! | [`without_several_loops`] | reasons why six-bars and eight-bars are not searched for in a problem |
-//! | [`without_sliders`] | reasons why linkages with a slider are not searched for in a problem |
 //! | `values` | the value types of TOML files, with errors in a designer's words |
 
 mod body;
@@ -42,7 +41,6 @@ mod targets;
 mod task_spec;
 pub(crate) mod values;
 pub mod without_several_loops;
-pub mod without_sliders;
 
 pub use body::{Body, Link, Output, Sense, best_frame};
 pub use builder::ProblemBuilder;

@@ -327,6 +327,11 @@ pub enum Method {
 }
 
 impl Method {
+    /// Returns whether linkages with a slider are searched for: by least squares alone.
+    pub fn finds_sliders(self) -> bool {
+        matches!(self, Method::Auto | Method::LeastSquares)
+    }
+
     /// Returns the name in files.
     pub fn name(self) -> &'static str {
         match self {

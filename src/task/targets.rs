@@ -393,6 +393,21 @@ impl Task {
         self.untimed.get(j).copied().unwrap_or(false)
     }
 
+    /// Returns the crank angles between which that of a target lies which has its own: those of the timed targets before and after
+    /// it, on the way around the list. `angles` holds those of the timed targets, `turn` is a whole turn in their unit.
+    pub fn between_timed(&self, angles: &[f64], turn: f64, j: usize) -> Option<[f64; 2]> {
+        let n = angles.len() as isize;
+        let turn = if angles.last() < angles.first() { -turn } else { turn };
+        let neighbour = |step: isize| {
+            (1..=n).find_map(|k| {
+                let place = j as isize + step * k;
+                let at = place.rem_euclid(n) as usize;
+                (!self.is_untimed(at)).then(|| angles[at] + turn * place.div_euclid(n) as f64)
+            })
+        };
+        Some([neighbour(-1)?, neighbour(1)?])
+    }
+
     /// Returns the diagonal of the target's bounding box; of a body that only turns, the length that an angle error of one
     /// radian counts like; of a function, the length of the ground link. Positive.
     pub fn size(&self) -> f64 {

@@ -39,6 +39,7 @@ mod rungs;
 mod search;
 mod several_loops;
 mod slider_functions;
+mod slider_targets;
 mod sliders;
 mod snapping;
 mod suite;

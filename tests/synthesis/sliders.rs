@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-fn slider_crank() -> CrankLinkage {
+pub fn slider_crank() -> CrankLinkage {
     let direction = 0.3;
     let line = (Complex::new(1.1, 1.6), direction);
     let offset = Complex::new(2.0, 1.0);
@@ -28,7 +28,7 @@ fn slider_crank() -> CrankLinkage {
     CrankLinkage::SliderCrank(made.expect("a linkage"))
 }
 
-fn inverted() -> CrankLinkage {
+pub fn inverted() -> CrankLinkage {
     let pivots = [Complex::new(0.0, 0.0), Complex::new(2.5, 0.5)];
     let made = InvertedSliderCrank::from_parts(pivots, 1.0, 0.4, Complex::new(3.0, 1.0), AssemblyMode::Plus);
     CrankLinkage::InvertedSliderCrank(made.expect("a linkage"))

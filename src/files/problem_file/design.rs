@@ -10,7 +10,6 @@ use crate::task::region::Region;
 use crate::task::spec::{DesignSpec, Limits, RequireSpec, SolveSpec, TaskSpec};
 use crate::task::values::OneOrMore;
 use crate::task::without_several_loops::WithoutSeveralLoops;
-use crate::task::without_sliders::WithoutSliders;
 
 /// Two quantities that should agree may differ by this part of their scale: a person types few digits.
 const TYPED_DIGITS: f64 = 1e-6;
@@ -48,7 +47,7 @@ fn kinds_of(raw: &RawDesign, of_places: bool) -> Vec<LinkageKind> {
 }
 
 /// Refuses keys that go with no kind that is searched for: an empty list of kinds, a line or a stroke without a slider-crank, a
-/// kind that has no such output, and sliders where they are not searched for ([`WithoutSliders`]).
+/// kind that has no such output, and sliders by a method that does not search for them.
 pub(super) fn of_kinds(
     toml: &TomlText<'_>,
     raw: &RawDesign,
@@ -91,8 +90,12 @@ pub(super) fn of_kinds(
         return toml.refuse("design.mechanism", message, help);
     }
     let Some(slider) = kinds.iter().find(|kind| kind.has_slider()) else { return Ok(()) };
-    let Some(reason) = WithoutSliders::of(task, solve) else { return Ok(()) };
-    let why = format!("\"{slider}\" {reason}");
+    let method = solve.method;
+    if method.finds_sliders() {
+        return Ok(());
+    }
+    let why =
+        format!("\"{slider}\" is searched for by least squares alone, not by method = \"{}\"", method.name());
     if raw.mechanism.is_none() {
         return toml.refuse_key(
             "task.function",

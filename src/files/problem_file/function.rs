@@ -118,18 +118,12 @@ fn of_places(toml: &TomlText<'_>, function: &RawFunction, ranges: RangesSpec) ->
         let message = "the outputs are places of a slider, whose errors are lengths";
         return refuse("tolerance_deg", message.into(), "write tolerance");
     }
-    let free = [
-        ("input_range_deg", ranges.input_range_deg.is_some()),
-        ("output_range_deg", ranges.output_range_deg.is_some() || function.output_range_deg.is_some()),
-    ];
-    match free.into_iter().find(|(_, there)| *there) {
-        None => Ok(()),
-        Some((key, _)) => {
-            let message = format!("a free {key} does not go with places of a slider as outputs");
-            let help = if key == "input_range_deg" { "write it as a number" } else { "write output_range" };
-            refuse(key, message, help)
-        }
+    if ranges.output_range_deg.is_some() || function.output_range_deg.is_some() {
+        let message = "output_range_deg is about angles, and the outputs are places of a slider";
+        let help = "write output_range, a length: a free one would be met by a linkage of any size";
+        return refuse("output_range_deg", message.into(), help);
     }
+    Ok(())
 }
 
 /// Refuses keys that are about places of a slider where the outputs are angles.

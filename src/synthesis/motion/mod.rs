@@ -271,6 +271,6 @@ impl Strategy for Motion<'_> {
         if self.freedom > 0 && self.at.is_exact(context.problem) && self.at.batch < FAMILY_BATCHES {
             return false;
         }
-        self.at.is_done(context, &STOPPING)
+        self.at.is_done(context, context.problem.spec().solve.candidates, &STOPPING)
     }
 }

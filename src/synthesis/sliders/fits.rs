@@ -12,9 +12,12 @@ use crate::record::{Candidate, CurveErrorRecord, ErrorRecord};
 use crate::synthesis::Context;
 use crate::synthesis::constants::Effort;
 use crate::synthesis::constants::sliders::{HOP, HOPS, NEARLY, PROMISING, TURNING};
-use crate::task::forms::slider::fit::{Angles, SliderFit, settle};
+use crate::synthesis::polish::reserve;
+use crate::task::forms::slider::fit::{Angles, OwnAngles, SliderFit, settle};
 use crate::task::forms::slider::limits::Limited;
+use crate::task::forms::slider::ranged::{RangedFit, joined, parted};
 use crate::task::forms::slider::shape::{Closure, FRAME, OFFSET, SHAPE, SliderShape};
+use crate::task::forms::torus::Positions;
 use crate::task::ranges::Reference;
 use crate::task::{AngleOffset, Output, Problem, Timing};
 use std::f64::consts::PI;
@@ -58,10 +61,15 @@ pub(super) fn start_at(problem: &Problem, target: &Target, candidate: &Candidate
     Some(Start {
         kind: linkage.kind(),
         x: shape.unknowns(offset, frame_of(problem, target, candidate)),
-        positions: if is_free { at.map(position).collect::<Option<_>>()? } else { Vec::new() },
+        positions: if is_free || !target.own.is_empty() {
+            at.map(position).collect::<Option<_>>()?
+        } else {
+            Vec::new()
+        },
         assembly: linkage.assembly(),
         direction,
         turns: linkage.mobility().input_turns_fully(),
+        scales: candidate.scales(&problem.spec().task),
     })
 }
 
@@ -79,7 +87,7 @@ fn frame_of(problem: &Problem, target: &Target, candidate: &Candidate) -> f64 {
 }
 
 /// Returns a start of a slider-crank with its line seen in the sense that is nearest to its bounds.
-fn aligned(limits: &Limited, is_of_places: bool, mut start: Start) -> Start {
+pub(super) fn aligned(limits: &Limited, is_of_places: bool, mut start: Start) -> Start {
     if start.kind == LinkageKind::SliderCrank {
         let (angle, is_turned) = limits.line_angle(start.x[5]);
         start.x[5] = angle;
@@ -93,6 +101,53 @@ fn aligned(limits: &Limited, is_of_places: bool, mut start: Start) -> Start {
         }
     }
     start
+}
+
+/// Returns the fit of a start, its points in the order that they have.
+pub(super) fn fit_of<'f, const R: usize>(
+    problem: &Problem,
+    target: &'f Target,
+    limits: &'f Limited,
+    start: &Start,
+) -> SliderFit<'f, R> {
+    let angles = match problem.task().timing() {
+        Timing::Free => Angles::Free,
+        Timing::Prescribed { offset, .. } => {
+            Angles::Prescribed(problem.phases(start.direction), *offset, start.assembly)
+        }
+    };
+    let fit = SliderFit {
+        kind: start.kind,
+        points: &target.points,
+        weights: &target.weights,
+        body: target.body.as_ref(),
+        outputs: target.outputs.as_ref(),
+        sign: start.direction,
+        angles,
+        own: if target.own.is_empty() { OwnAngles::None } else { OwnAngles::Of(&target.own) },
+        limits,
+        sense: 0.0,
+        ends_meet: problem.task().repeats_first(),
+    };
+    let is_free = matches!(fit.angles, Angles::Free);
+    if is_free && problem.order_required() { fit.in_order(&start.x, &start.positions) } else { fit }
+}
+
+/// Returns the fit of a start to a function with free ranges; `None` if the problem is no such function.
+pub(super) fn ranged_fit_of<'f, const R: usize>(
+    problem: &Problem,
+    target: &'f Target,
+    limits: &'f Limited,
+    start: &Start,
+) -> Option<RangedFit<'f, R>> {
+    let ranges = problem.task().ranges();
+    let Timing::Prescribed { crank_angles, .. } = problem.task().timing() else { return None };
+    if ranges.are_written() {
+        return None;
+    }
+    let run = problem.run(start.direction);
+    let turns = crank_angles.iter().map(|turn| run * turn).collect();
+    Some(RangedFit::new(fit_of(problem, target, limits, start), turns, &ranges))
 }
 
 /// A round's fits within an allowance of evaluations.
@@ -114,30 +169,6 @@ impl<'a> Fits<'a> {
 
     fn is_at_its_end(&self) -> bool {
         self.context.stopped() || self.used >= self.allowance
-    }
-
-    /// Returns the fit of a start, its points in the order that they have.
-    fn fit<'f, const R: usize>(&'f self, limits: &'f Limited, start: &Start) -> SliderFit<'f, R> {
-        let problem = self.context.problem;
-        let angles = match problem.task().timing() {
-            Timing::Free => Angles::Free,
-            Timing::Prescribed { offset, .. } => {
-                Angles::Prescribed(problem.phases(start.direction), *offset, start.assembly)
-            }
-        };
-        let fit = SliderFit {
-            kind: start.kind,
-            points: &self.target.points,
-            weights: &self.target.weights,
-            body: self.target.body.as_ref(),
-            outputs: self.target.outputs.as_ref(),
-            sign: start.direction,
-            angles,
-            limits,
-            sense: 0.0,
-            ends_meet: problem.task().repeats_first(),
-        };
-        if problem.order_required() { fit.in_order(&start.x, &start.positions) } else { fit }
     }
 
     /// Fits from a start, and returns the end with its merit; `None` if it is given up.
@@ -172,17 +203,42 @@ impl<'a> Fits<'a> {
             feasibility: 1e-9,
             hopeless_cost: 0.04 * weight * radian * radian,
         };
-        let fit = self.fit::<R>(&limits, &start);
-        let (positions, context) = (start.positions.clone(), self.context);
+        let nearly = NEARLY * weight * radian * radian;
+        let problem = self.context.problem;
+        if let Some(fit) = ranged_fit_of::<R>(problem, self.target, &limits, &start) {
+            let from = (joined(&start.x, start.scales), start.positions.clone());
+            let (merit, unknowns, positions) = self.solved(&fit, from, &options, nearly)?;
+            let (x, scales) = parted(&unknowns);
+            return Some((merit, Start { x, positions, scales, ..start }));
+        }
+        let fit = fit_of::<R>(problem, self.target, &limits, &start);
+        let from = (start.x, start.positions.clone());
+        let (merit, x, positions) = self.solved(&fit, from, &options, nearly)?;
+        Some((merit, Start { x, positions, ..start }))
+    }
+
+    /// Solves a fit from its unknowns and positions, and leads it on to its last digits if its cost is at most `nearly`; returns
+    /// the end with its merit, `None` if it is given up.
+    fn solved<const N: usize, const R: usize, F>(
+        &mut self,
+        fit: &F,
+        (x, positions): ([f64; N], Positions),
+        options: &LmOptions,
+        nearly: f64,
+    ) -> Option<(f64, [f64; N], Positions)>
+    where
+        F: BlockLeastSquares<N, R, State = Positions>,
+    {
+        let context = self.context;
         let stop = || context.stopped();
-        let mut end = solve(&fit, start.x, positions, &options, &stop);
-        if end.cost <= NEARLY * weight * radian * radian && end.outcome != LmOutcome::Exact {
-            finish(&fit, &mut end, &options, &stop);
+        let mut end = solve(fit, x, positions, options, &stop);
+        if end.cost <= nearly && end.outcome != LmOutcome::Exact {
+            finish(fit, &mut end, options, &stop);
         }
         self.used += end.evaluations;
+        let weight: f64 = self.target.weights.iter().sum();
         let usable = !matches!(end.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
-        let merit = end.cost + weight * end.violation * end.violation;
-        usable.then_some((merit, Start { x: end.x, positions: end.state, ..start }))
+        usable.then_some((end.cost + weight * end.violation * end.violation, end.x, end.state))
     }
 
     fn is_of_places(&self) -> bool {
@@ -230,6 +286,7 @@ impl<'a> Fits<'a> {
         draws: &mut Stream,
     ) -> Vec<(f64, Start)> {
         let mut hopped = Vec::with_capacity(HOPS);
+        let is_free = matches!(self.context.problem.task().timing(), Timing::Free);
         for _ in 0..HOPS {
             if self.is_at_its_end() {
                 break;
@@ -245,11 +302,12 @@ impl<'a> Fits<'a> {
                 }
             }
             let Some(shape) = SliderShape::of(start.kind, &start.x) else { continue };
-            if !settle(&shape, &mut start.positions) {
+            if is_free && !settle(&shape, &mut start.positions) {
                 continue;
             }
             let start = aligned(limits, false, start);
-            let cost = self.fit::<2>(limits, &start).cost(&start.x, &start.positions);
+            let cost = fit_of::<2>(self.context.problem, self.target, limits, &start)
+                .cost(&start.x, &start.positions);
             hopped.extend(cost.map(|cost| (cost, start)));
         }
         hopped
@@ -265,7 +323,11 @@ impl<'a> Fits<'a> {
             }
             self.used += 1;
             let start = aligned(limits, is_of_places, start);
-            let cost = self.fit::<1>(limits, &start).cost(&start.x, &start.positions);
+            let (problem, target) = (self.context.problem, self.target);
+            let cost = match ranged_fit_of::<1>(problem, target, limits, &start) {
+                Some(fit) => fit.cost(&joined(&start.x, start.scales), &start.positions),
+                None => fit_of::<1>(problem, target, limits, &start).cost(&start.x, &start.positions),
+            };
             glanced.extend(cost.map(|cost| (cost, start)));
         }
         glanced
@@ -282,7 +344,11 @@ impl<'a> Fits<'a> {
             }
             self.used += 1;
             let start = aligned(limits, false, start);
-            let Some(cost) = self.fit::<3>(limits, &start).cost(&start.x, &start.positions) else { continue };
+            let Some(cost) = fit_of::<3>(self.context.problem, self.target, limits, &start)
+                .cost(&start.x, &start.positions)
+            else {
+                continue;
+            };
             let Some(shape) = SliderShape::of(start.kind, &start.x) else { continue };
             let mut signs = start.positions.iter().map(|position| shape.assembly_of(*position));
             let first = signs.next();
@@ -292,55 +358,77 @@ impl<'a> Fits<'a> {
         glanced
     }
 
-    /// Returns the judged candidate of an end; the distances to its whole curve are measured later, if it is listed.
+    /// Returns the judged candidate of an end.
     pub(super) fn judged(&self, end: &Start) -> Option<Candidate> {
-        const UNKNOWN: CurveErrorRecord = CurveErrorRecord { sum_sq: 0.0, rms: 0.0, max: 0.0 };
-        let problem = self.context.problem;
-        let Target { size, centre, .. } = *self.target;
-        let mut unit = SliderShape::of(end.kind, &end.x)?;
-        if let (Some(_), Closure::Line { coupler, .. }) = (&self.target.outputs, unit.closure) {
-            // P of a function is drawn at the slider's pin.
-            unit.offset = Complex::new(coupler, 0.0);
-        }
-        let shape = unit.carried(Complex::new(size, 0.0), centre);
-        let sign = |position: &[Complex; 2]| unit.assembly_of(*position);
-        let first = end.positions.first().map_or(end.assembly, sign);
-        // Where crank angles or places count along the line, its sense stays, and so does t1.
-        let counts_along =
-            matches!(problem.task().timing(), Timing::Prescribed { offset: AngleOffset::Ground, .. });
-        let keeps = matches!(shape.closure, Closure::Line { .. }) && (counts_along || problem.is_function());
-        let linkage = match keeps {
-            true => shape.linkage(AssemblyMode::Plus).ok()?.with_assembly(first),
-            false => shape.linkage(first).ok()?,
-        };
-        let own = if keeps { first } else { AssemblyMode::Plus };
-        let (crank_deg, assemblies) = match problem.task().timing() {
-            Timing::Free => {
-                // Seen from the first position, whose sign is +1.
-                let own = |position| AssemblyMode::of(sign(position).sign() * first.sign());
-                let angles = end.positions.iter().map(|[e, _]| e.arg()).collect();
-                unwrapped(problem, linkage, angles, end.positions.iter().map(own).collect())
-            }
-            Timing::Prescribed { offset, .. } => {
-                let base = match offset {
-                    AngleOffset::Free => wrapped(end.x[OFFSET]).to_degrees(),
-                    AngleOffset::Fixed => 0.0,
-                    AngleOffset::Ground => linkage.ground_angle().to_degrees(),
-                };
-                let written = &problem.spec().task.timing.as_ref()?.crank_deg;
-                let run = problem.run(end.direction);
-                let crank_deg: Vec<f64> = written.iter().map(|deg| base + run * deg).collect();
-                let t1 = vec![own; crank_deg.len()];
-                (crank_deg, t1)
-            }
-        };
-        let frame = end.x[FRAME] + turn_of_coupler(&unit, first);
-        let own = self.target.body.as_ref().map(|_| Reference::frame(wrapped(frame).to_degrees()));
-        let mut candidate = assess_on_curve(problem, linkage, (&crank_deg, &assemblies), own, Some(UNKNOWN))?;
-        let ErrorRecord { sum_sq, rms, max, .. } = candidate.error;
-        candidate.error.to_curve = CurveErrorRecord { sum_sq, rms, max };
-        Some(candidate)
+        judged(self.context.problem, self.target, end)
     }
+}
+
+/// Returns the judged candidate of an end; the distances to its whole curve are measured later, if it is listed.
+pub(super) fn judged(problem: &Problem, target: &Target, end: &Start) -> Option<Candidate> {
+    const UNKNOWN: CurveErrorRecord = CurveErrorRecord { sum_sq: 0.0, rms: 0.0, max: 0.0 };
+    let Target { size, centre, .. } = *target;
+    let mut unit = SliderShape::of(end.kind, &end.x)?;
+    if let (Some(_), Closure::Line { coupler, .. }) = (&target.outputs, unit.closure) {
+        // P of a function is drawn at the slider's pin.
+        unit.offset = Complex::new(coupler, 0.0);
+    }
+    let shape = unit.carried(Complex::new(size, 0.0), centre);
+    let sign = |position: &[Complex; 2]| unit.assembly_of(*position);
+    let is_free = matches!(problem.task().timing(), Timing::Free);
+    let first = end.positions.first().filter(|_| is_free).map_or(end.assembly, sign);
+    // Where crank angles or places count along the line, its sense stays, and so does t1.
+    let counts_along =
+        matches!(problem.task().timing(), Timing::Prescribed { offset: AngleOffset::Ground, .. });
+    let keeps = matches!(shape.closure, Closure::Line { .. }) && (counts_along || problem.is_function());
+    let linkage = match keeps {
+        true => shape.linkage(AssemblyMode::Plus).ok()?.with_assembly(first),
+        false => shape.linkage(first).ok()?,
+    };
+    let own = if keeps { first } else { AssemblyMode::Plus };
+    let (crank_deg, assemblies) = match problem.task().timing() {
+        Timing::Free => {
+            // Seen from the first position, whose sign is +1.
+            let own = |position| AssemblyMode::of(sign(position).sign() * first.sign());
+            let angles = end.positions.iter().map(|[e, _]| e.arg()).collect();
+            unwrapped(problem, linkage, angles, end.positions.iter().map(own).collect())
+        }
+        Timing::Prescribed { offset, .. } => {
+            let base = match offset {
+                AngleOffset::Free => wrapped(end.x[OFFSET]).to_degrees(),
+                AngleOffset::Fixed => 0.0,
+                AngleOffset::Ground => linkage.ground_angle().to_degrees(),
+            };
+            let written = &problem.spec().task.timing.as_ref()?.crank_deg;
+            let run = end.scales[0] * problem.run(end.direction);
+            let at_target = |(j, deg): (usize, &f64)| {
+                let guess = base + run * deg;
+                match end.positions.get(j).filter(|_| target.own.get(j) == Some(&true)) {
+                    Some([e, _]) => guess + wrapped(e.arg() - guess.to_radians()).to_degrees(),
+                    None => guess,
+                }
+            };
+            let crank_deg: Vec<f64> = written.iter().enumerate().map(at_target).collect();
+            let t1 = vec![own; crank_deg.len()];
+            (crank_deg, t1)
+        }
+    };
+    let frame = end.x[FRAME];
+    let turned = || wrapped(frame + turn_of_coupler(&unit, first)).to_degrees();
+    let is_frame_free = problem.task().body().is_some_and(|body| body.given_frame(0.0).is_none());
+    let own = match &target.outputs {
+        None => target.body.as_ref().map(|_| turned()),
+        // Unless deviations count one by one, the frame of a function is the one of the least errors.
+        Some(outputs) => (is_frame_free && reserve(problem, 1000) > 0).then(|| match outputs.kind {
+            Output::Angle => turned(),
+            Output::Place => frame * size,
+        }),
+    };
+    let own = own.map(|frame_deg| Reference { frame_deg, scale: end.scales[1] });
+    let mut candidate = assess_on_curve(problem, linkage, (&crank_deg, &assemblies), own, Some(UNKNOWN))?;
+    let ErrorRecord { sum_sq, rms, max, .. } = candidate.error;
+    candidate.error.to_curve = CurveErrorRecord { sum_sq, rms, max };
+    Some(candidate)
 }
 
 /// Returns the angle from the coupler's direction of a shape to that of its linkage with the assembly of one of its positions.

@@ -18,6 +18,7 @@ use crate::synthesis::dyads::{Driving, driving_dyad, pin_on_line, pin_on_line_ac
 use crate::synthesis::motion::DyadStarts;
 use crate::task::forms::slider::fit::settle;
 use crate::task::forms::slider::shape::{Closure, FRAME, SliderShape};
+use crate::task::forms::start::AS_WRITTEN;
 use crate::task::forms::torus::Positions;
 use crate::task::{Problem, Timing};
 use std::f64::consts::PI;
@@ -75,11 +76,14 @@ impl<'a> Guided<'a> {
         };
         let angles = task.body().map_or(&[][..], |body| &body.angles);
         let driven = |&direction: &f64| {
-            let given = angles.iter().zip(crank_angles).zip(task.weights());
-            let given = given.filter(|((angle, _), _)| angle.is_some());
-            let (turns, weights): (Vec<f64>, Vec<f64>) =
-                given.map(|((_, turn), weight)| (direction * turn, *weight)).unzip();
-            let Driving { dyad, angle } = driving_dyad(&self.poses, &turns, &weights)?;
+            let given = (0..task.len()).filter(|j| angles[*j].is_some() && !task.is_untimed(*j));
+            let (mut poses, mut turns, mut weights) = (Vec::new(), Vec::new(), Vec::new());
+            for j in given {
+                poses.extend(angles[j].map(|angle| Pose::new(task.points()[j], angle)));
+                turns.push(direction * crank_angles[j]);
+                weights.push(task.weights()[j]);
+            }
+            let Driving { dyad, angle } = driving_dyad(&poses, &turns, &weights)?;
             Some(Crank { dyad, angle, direction })
         };
         self.problem.directions().iter().filter_map(driven).collect()
@@ -115,7 +119,7 @@ impl<'a> Guided<'a> {
             if !settle(&shape, &mut positions) {
                 return None;
             }
-        } else {
+        } else if target.own.is_empty() {
             positions.clear();
         }
         let offset = if self.problem.offset_is_free() { crank.angle } else { 0.0 };
@@ -126,7 +130,8 @@ impl<'a> Guided<'a> {
             Closure::Block { .. } => LinkageKind::InvertedSliderCrank,
         };
         let turns = shape.linkage(assembly).ok()?.mobility().input_turns_fully();
-        Some(Start { kind, x, positions, assembly, direction: crank.direction, turns })
+        let direction = crank.direction;
+        Some(Start { kind, x, positions, assembly, direction, turns, scales: AS_WRITTEN })
     }
 
     /// Returns the positions at all targets, in units of the target: at the poses by the body's place there, else at the

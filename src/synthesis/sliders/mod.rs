@@ -11,8 +11,10 @@
 //! several times as long as it took to reach it) and as many distinct answers as were asked for are known, or no new one has
 //! come for `quiet_batches` of them; an exact answer needs no second hit, and where one is enough the rounds after it in its
 //! batch are not read. The best answers are fitted on to the last digit at the end; exact ones that form a family are led to
-//! better transmission angles.
+//! better transmission angles. For the largest deviation and for tolerances, exact targets among them, the answers are polished
+//! afterwards ([`super::polish`]).
 
+mod deviations;
 mod fits;
 mod guided;
 mod output_starts;
@@ -26,6 +28,7 @@ use super::constants::sliders::{
 use super::driver::{Allowance, Found, Standing, Strategy, drive, in_parallel};
 use super::family::{climb, freedom_within, one_is_enough};
 use super::multistart::{RoundOutcome, by_merit};
+use super::polish::{basins_wanted, improve, reserve};
 use super::states::{RepeatedState, SearchState};
 use crate::judge::rank::{exact_cost, searched, sort};
 use crate::mechanism::LinkageKind;
@@ -34,13 +37,14 @@ use crate::record::{Candidate, Evaluations, Reason};
 use crate::task::Problem;
 use crate::task::forms::slider::limits::Limited;
 use crate::task::forms::slider::shape::SHAPE;
-use crate::task::without_sliders::WithoutSliders;
+use crate::task::spec::Objective;
 use fits::{Fits, start_at};
 pub(super) use fits::{refit, unfitted};
 use guided::Guided;
 use output_starts::output_starts;
 use rayon::prelude::*;
-use starts::{Start, Target};
+pub(super) use starts::Start;
+use starts::Target;
 use std::slice;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -66,17 +70,29 @@ pub(super) struct Sliders<'a> {
 pub(super) fn beside_four_bars(context: Context<'_>, limit: u64) -> (Vec<Candidate>, Evaluations) {
     let problem = context.problem;
     let mut spec = problem.spec().clone();
-    if !spec.design.is_of_four_bars() || WithoutSliders::of(&spec.task, &spec.solve).is_some() {
+    if !spec.design.is_of_four_bars() || !spec.solve.method.finds_sliders() {
         return (Vec::new(), Evaluations::default());
     }
     let has_output =
         |kind: &LinkageKind| spec.task.output.as_ref().is_none_or(|output| output.output.is_of(*kind));
     let slides = |kind: &LinkageKind| kind.has_slider() && has_output(kind);
     let kinds: Vec<LinkageKind> = LinkageKind::ALL.into_iter().filter(slides).collect();
-    (spec.design.mechanism, spec.solve.candidates) = (kinds.clone(), 1);
-    let Ok(within) = problem.with(spec) else { return (Vec::new(), Evaluations::default()) };
+    spec.design.mechanism = kinds;
+    match problem.with(spec) {
+        Ok(within) => of_the_design(context.of(&within), limit),
+        Err(_) => (Vec::new(), Evaluations::default()),
+    }
+}
+
+/// Searches for one answer among the linkages with a slider that the context's problem asks for, with at most `limit` evaluations.
+/// Returns the accepted ones, the best first, and the evaluations used.
+pub(super) fn of_the_design(context: Context<'_>, limit: u64) -> (Vec<Candidate>, Evaluations) {
+    let mut spec = context.problem.spec().clone();
+    spec.solve.candidates = 1;
+    let Ok(within) = context.problem.with(spec) else { return (Vec::new(), Evaluations::default()) };
     let context = Context { keeper: None, ..context.of(&within) }.silent();
-    let Some(search) = Sliders::of(context, &kinds) else { return (Vec::new(), Evaluations::default()) };
+    let kinds = &within.spec().design.mechanism;
+    let Some(search) = Sliders::of(context, kinds) else { return (Vec::new(), Evaluations::default()) };
     let found = search.search(context, Allowance { limit, patience: limit });
     (found.candidates.into_iter().filter(|c| c.accepted).collect(), found.evaluations)
 }
@@ -85,7 +101,7 @@ impl<'a> Sliders<'a> {
     /// Creates the search of a problem, or goes on with the one that was kept; `None` if none of the kinds has a slider.
     pub(super) fn of(context: Context<'a>, kinds: &[LinkageKind]) -> Option<Self> {
         let problem = context.problem;
-        let target = Target::of(problem);
+        let target = Target::searched(problem);
         let kinds: Vec<(LinkageKind, Limited)> = kinds
             .iter()
             .filter(|kind| kind.has_slider())
@@ -118,6 +134,10 @@ impl<'a> Sliders<'a> {
 
     /// Searches on until the best is believed, the limit is reached, or the patience is at an end.
     pub(super) fn search(mut self, context: Context<'_>, allowance: Allowance) -> Found {
+        // What the objective and the tolerances ask for beyond least squares comes after it.
+        let left_over = reserve(context.problem, allowance.limit);
+        let Allowance { limit, patience } = allowance;
+        let allowance = Allowance { limit: limit - left_over, patience: patience.min(limit - left_over) };
         let mut reason = if self.has_ended(context.problem) {
             Reason::TargetReached
         } else {
@@ -129,9 +149,17 @@ impl<'a> Sliders<'a> {
             let left = allowance.limit.saturating_sub(self.at.evaluations.objective);
             self.at.evaluations += context.cost(climb(context, &mut self.at.found, left));
         }
-        if self.polish(context, allowance.limit) {
+        let of_squares = context.problem.spec().solve.objective == Objective::SumOfSquares;
+        if of_squares && self.polish(context, allowance.limit) {
             reason = if reason == Reason::TargetReached { reason } else { Reason::Converged };
         }
+        if left_over > 0 {
+            let RepeatedState { found, evaluations, .. } = &mut self.at;
+            improve::<Start>(context, found, evaluations, limit);
+            sort(context.problem, found);
+        }
+        // The largest deviation has other basins than the sum of squares.
+        let repeats = repeats.filter(|_| of_squares);
         Found { repeats, reason, ..self.found(context.problem) }
     }
 
@@ -341,6 +369,6 @@ impl Strategy for Sliders<'_> {
         let is_sampled = self.freedom == 0 || self.at.batch >= FAMILY_BATCHES;
         let is_family = !is_sampled && self.at.is_exact(context.problem);
         let is_glimpsed = self.glimpse.is_some_and(|batches| self.at.batch >= batches);
-        is_glimpsed || !is_family && self.at.is_done(context, &STOPPING)
+        is_glimpsed || !is_family && self.at.is_done(context, basins_wanted(context.problem), &STOPPING)
     }
 }

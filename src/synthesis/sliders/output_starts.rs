@@ -13,14 +13,15 @@
 //! both multiplied out, whose products are taken for unknowns of their own, or they are drawn. The place of a block depends on
 //! a g and g^2 + a^2 - h^2 alone: h is drawn.
 
-use super::starts::{Start, Target};
+use super::starts::{Start, Target, log_uniform};
 use crate::mechanism::{AssemblyMode, Complex, LinkageKind};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
-use crate::synthesis::constants::sliders::{OFFSETS, TURNS};
+use crate::synthesis::constants::sliders::{OFFSETS, SCALES, TURNS};
 use crate::task::forms::slider::ends::best_transmitting;
 use crate::task::forms::slider::limits::Limited;
 use crate::task::forms::slider::output::Outputs;
 use crate::task::forms::slider::shape::{Closure, FRAME, SliderShape};
+use crate::task::ranges::Scales;
 use crate::task::{AngleOffset, Output, Problem, Timing};
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -48,14 +49,22 @@ pub(super) fn output_starts(
     let is_free = [*offset == AngleOffset::Free, limits.bounds[FRAME].0 < limits.bounds[FRAME].1];
     let mut starts = Vec::new();
     let place = Placing::of(limits, kind, outputs.kind);
-    for sign in signs {
+    let ranges = problem.task().ranges();
+    let drawn_scales = if ranges.are_written() { 1 } else { SCALES };
+    let scaled = |stream: &mut Stream| {
+        ranges.bounds().map(|(low, high)| if low < high { log_uniform(stream, low, high) } else { low })
+    };
+    let at = signs.iter().flat_map(|sign| (0..drawn_scales).map(move |_| sign));
+    for sign in at {
+        let scales = scaled(stream);
+        let [h, k] = scales;
         let given = crank_angles.iter().zip(&outputs.wanted).zip(&target.weights);
-        let pairs: Vec<Pair> = given.map(|((delta, o), weight)| (*delta, sign * o, *weight)).collect();
+        let pairs: Vec<Pair> = given.map(|((delta, o), weight)| (h * delta, sign * k * o, *weight)).collect();
         if first
             && let Some(ends) = problem.spec().require.ends().filter(|_| kind == LinkageKind::SliderCrank)
         {
             for solution in of_ends(&pairs, ends, target.size) {
-                starts.extend(place.start(kind, *sign, is_free, solution));
+                starts.extend(place.start(kind, (*sign, scales), is_free, solution));
             }
         }
         let mut solve = |offsets: [f64; 2], stream: &mut Stream| {
@@ -64,7 +73,8 @@ pub(super) fn output_starts(
                 (Output::Place, _) => of_block(&pairs, offsets, stream),
                 (Output::Angle, _) => of_angle(&pairs, offsets).into_iter().collect(),
             };
-            starts.extend(solutions.into_iter().filter_map(|s| place.start(kind, *sign, is_free, s)));
+            starts
+                .extend(solutions.into_iter().filter_map(|s| place.start(kind, (*sign, scales), is_free, s)));
         };
         if first && is_free == [true; 2] {
             let suggested = match (outputs.kind, kind) {
@@ -74,7 +84,7 @@ pub(super) fn output_starts(
             };
             suggested.into_iter().for_each(|offsets| solve(offsets, stream));
         }
-        for _ in 0..OFFSETS {
+        for _ in 0..OFFSETS / drawn_scales {
             let mut draw =
                 |is_free: bool, reach: f64| if is_free { uniform(stream, -reach, reach) } else { 0.0 };
             let phi0 = draw(is_free[0], PI);
@@ -126,7 +136,7 @@ impl Placing {
     fn start(
         &self,
         kind: LinkageKind,
-        sign: f64,
+        (sign, scales): (f64, Scales),
         [is_input_free, is_output_free]: [bool; 2],
         Solution { offsets: [phi0, beta], shape, assembly }: Solution,
     ) -> Option<Start> {
@@ -146,7 +156,8 @@ impl Placing {
         };
         let turns = shape.linkage(assembly).ok()?.mobility().input_turns_fully();
         let is_usable = x.iter().all(|x| x.is_finite());
-        is_usable.then_some(Start { kind, x, positions: Vec::new(), assembly, direction: sign, turns })
+        let positions = Vec::new();
+        is_usable.then_some(Start { kind, x, positions, assembly, direction: sign, turns, scales })
     }
 }
 

@@ -11,16 +11,20 @@
 use crate::mechanism::{AssemblyMode, Circuit, Complex, InputArc, LinkageKind};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::synthesis::atlas::{EVEN, Even, ON_ARC, OnArc, TRACED, Traced, arc_misfits, fraction};
-use crate::task::forms::slider::fit::BodyAngles;
+use crate::synthesis::constants::motion::EXACT_WEIGHT;
+use crate::task::forms::slider::fit::{BodyAngles, base_angle};
 use crate::task::forms::slider::output::Outputs;
 use crate::task::forms::slider::shape::{Closure, OFFSET, SliderShape, Unknowns};
+use crate::task::forms::start::AS_WRITTEN;
+use crate::task::forms::timed::ATTACHED;
 use crate::task::forms::torus::Positions;
+use crate::task::ranges::Scales;
 use crate::task::{AngleOffset, Problem, Timing};
 use std::f64::consts::{PI, TAU};
 
 /// A start of a fit.
 #[derive(Clone, Debug)]
-pub(super) struct Start {
+pub(in crate::synthesis) struct Start {
     pub(super) kind: LinkageKind,
     pub(super) x: Unknowns,
     /// The positions of free timing.
@@ -30,6 +34,8 @@ pub(super) struct Start {
     pub(super) direction: f64,
     /// Whether the crank of the drawn shape turns fully.
     pub(super) turns: bool,
+    /// The scales of a function's inputs and outputs.
+    pub(super) scales: Scales,
 }
 
 /// The target in units of its size around its centre, as starts and fits see it.
@@ -44,6 +50,8 @@ pub(super) struct Target {
     is_closed: bool,
     even: Option<Even>,
     on_arc: Option<OnArc>,
+    /// Whether a target has a crank angle of its own among prescribed ones; empty if none has.
+    pub(super) own: Vec<bool>,
     /// The angles of a motion's body.
     pub(super) body: Option<BodyAngles>,
     /// The outputs of a function.
@@ -77,6 +85,7 @@ impl Target {
                 is_closed: false,
                 even: None,
                 on_arc: None,
+                own: Vec::new(),
                 body: None,
                 outputs: Some(outputs),
             };
@@ -108,9 +117,29 @@ impl Target {
             size,
             along,
             is_closed,
+            own: if task.is_partly_timed() {
+                (0..task.len()).map(|j| task.is_untimed(j)).collect()
+            } else {
+                Vec::new()
+            },
             body,
             outputs: None,
         }
+    }
+
+    /// Returns the target with larger weights where the tolerance is zero, so that the answers of a search by least squares are
+    /// near to what the polish makes of them.
+    pub(super) fn searched(problem: &Problem) -> Target {
+        let mut target = Target::of(problem);
+        let task = &problem.spec().task;
+        let of_angles = task.body.as_ref().and_then(|body| body.tolerance_deg.as_ref());
+        let tolerances = if target.outputs.is_some() { of_angles } else { task.tolerance.as_ref() };
+        for (weight, tolerance) in target.weights.iter_mut().zip(tolerances.into_iter().flatten()) {
+            if *tolerance == 0.0 {
+                *weight *= EXACT_WEIGHT;
+            }
+        }
+        target
     }
 
     /// Returns the unit of a squared error: the objective is this many times the cost of a fit.
@@ -285,6 +314,7 @@ pub(super) fn free(
         assembly: AssemblyMode::Plus,
         direction: laid.direction,
         turns: drawn.arc.is_none(),
+        scales: AS_WRITTEN,
     };
     Some((misfit, start))
 }
@@ -335,7 +365,35 @@ pub(super) fn prescribed(
         x[OFFSET] = angle + turned.arg();
     }
     let assembly = AssemblyMode::of(sign);
-    Some((misfit, Start { kind, x, positions: Positions::new(), assembly, direction, turns }))
+    let mut start =
+        Start { kind, x, positions: Positions::new(), assembly, direction, turns, scales: AS_WRITTEN };
+    if !target.own.is_empty() {
+        start.positions = attached(problem, target, &start)?;
+    }
+    Some((misfit, start))
+}
+
+/// Returns the positions at targets of which some have their own crank angles: these are at the point of the curve that is
+/// nearest between their neighbours. `None` if the loop is open at a target.
+pub(super) fn attached(problem: &Problem, target: &Target, start: &Start) -> Option<Positions> {
+    let Timing::Prescribed { crank_angles, offset } = problem.task().timing() else { return None };
+    let shape = SliderShape::of(start.kind, &start.x)?;
+    let base = base_angle(&start.x, &shape, *offset);
+    let angles: Vec<f64> = crank_angles.iter().map(|angle| base + start.direction * angle).collect();
+    let at = |angle: f64| {
+        let e = Complex::from_polar(1.0, angle);
+        Some([e, shape.coupler_direction(e, start.assembly.sign())?])
+    };
+    let position = |j: usize| {
+        if !target.own[j] {
+            return at(angles[j]);
+        }
+        let [from, to] = problem.task().between_timed(&angles, TAU, j)?;
+        let samples = (1..ATTACHED).filter_map(|i| at(from + (to - from) * i as f64 / ATTACHED as f64));
+        let off = |position: &[Complex; 2]| (shape.coupler_point(*position) - target.points[j]).norm_sqr();
+        samples.min_by(|one, other| off(one).total_cmp(&off(other)))
+    };
+    (0..angles.len()).map(position).collect()
 }
 
 /// The linear part of a fit: P = A + K e + Z u, with its relative residual.
@@ -347,17 +405,21 @@ struct Linear {
 }
 
 fn linear(target: &Target, positions: &Positions) -> Option<Linear> {
-    let weight: f64 = target.weights.iter().sum();
+    // Of targets that have their own crank angles nothing is known yet.
+    let known = |j: usize| !target.own.get(j).copied().unwrap_or(false);
+    let weights: Vec<f64> =
+        target.weights.iter().enumerate().map(|(j, w)| if known(j) { *w } else { 0.0 }).collect();
+    let weight: f64 = weights.iter().sum();
     let zero = Complex::new(0.0, 0.0);
     let (mut e_mean, mut u_mean, mut t_mean) = (zero, zero, zero);
-    for (([e, u], t), w) in positions.iter().zip(&target.points).zip(&target.weights) {
+    for (([e, u], t), w) in positions.iter().zip(&target.points).zip(&weights) {
         e_mean += e * (w / weight);
         u_mean += u * (w / weight);
         t_mean += t * (w / weight);
     }
     let (mut ee, mut uu, mut tt) = (0.0, 0.0, 0.0);
     let (mut eu, mut et, mut ut) = (zero, zero, zero);
-    for (([e, u], t), w) in positions.iter().zip(&target.points).zip(&target.weights) {
+    for (([e, u], t), w) in positions.iter().zip(&target.points).zip(&weights) {
         let (e, u, t) = (e - e_mean, u - u_mean, t - t_mean);
         ee += w * e.norm_sqr();
         uu += w * u.norm_sqr();

@@ -16,6 +16,9 @@
 //! dP/dx_k = direct_k - i Z u G_k/G_w,     dP/dphi = i a e - i Z u G_phi/G_w
 //! ```
 //!
+//! *Partly prescribed timing.* A target that has a crank angle of its own has it as its own unknown, with u_j in closed form too:
+//! the tangent is dP/dphi above.
+//!
 //! In a motion a target has a third row, W (theta_j - arg u_j - beta): the error of the body's angle times the length W that a
 //! radian counts like, with the frame beta as an unknown. It is zero for a target without an angle. With the turn of u:
 //!
@@ -45,6 +48,27 @@ pub enum Angles {
     Free,
     /// Given from the x axis, from the ground, or up to an offset, with the assembly of all positions.
     Prescribed(Vec<Complex>, AngleOffset, AssemblyMode),
+}
+
+/// The targets of prescribed timing that have a crank angle of their own instead of the prescribed one.
+#[derive(Clone, Copy, Debug)]
+pub enum OwnAngles<'a> {
+    /// None of them.
+    None,
+    /// Those that are true.
+    Of(&'a [bool]),
+    /// All of them.
+    All,
+}
+
+impl OwnAngles<'_> {
+    pub(super) fn has(self, j: usize) -> bool {
+        match self {
+            OwnAngles::None => false,
+            OwnAngles::Of(own) => own[j],
+            OwnAngles::All => true,
+        }
+    }
 }
 
 /// The angles of a motion's body at its targets.
@@ -81,6 +105,8 @@ pub struct SliderFit<'a, const R: usize> {
     pub sign: f64,
     /// The crank angles.
     pub angles: Angles,
+    /// The targets that have their own crank angles among prescribed ones.
+    pub own: OwnAngles<'a>,
     /// The limits.
     pub limits: &'a Limited,
     /// The sense along the curves in which the points follow each other; 0: no order is kept.
@@ -90,15 +116,16 @@ pub struct SliderFit<'a, const R: usize> {
 }
 
 impl<const R: usize> SliderFit<'_, R> {
-    /// Returns the positions at the prescribed crank angles; `None` if the loop is open at one.
-    pub fn prescribed(&self, x: &Unknowns, shape: &SliderShape) -> Option<Positions> {
+    /// Returns the positions at the prescribed crank angles, or at a target's own one in `state`; `None` if the loop is open at
+    /// one.
+    pub fn prescribed(&self, x: &Unknowns, shape: &SliderShape, state: &Positions) -> Option<Positions> {
         let Angles::Prescribed(phases, offset, assembly) = &self.angles else { return None };
         let turn = Complex::from_polar(1.0, base_angle(x, shape, *offset));
-        let position = |phase: &Complex| {
-            let e = phase * turn;
+        let position = |(j, phase): (usize, &Complex)| {
+            let e = if self.own.has(j) { state.get(j)?[0] } else { phase * turn };
             Some([e, shape.coupler_direction(e, assembly.sign())?])
         };
-        phases.iter().map(position).collect()
+        phases.iter().enumerate().map(position).collect()
     }
 
     /// Returns the same fit with the points held in their present order around the curve.
@@ -106,6 +133,28 @@ impl<const R: usize> SliderFit<'_, R> {
     pub fn in_order(mut self, x: &Unknowns, positions: &Positions) -> Self {
         self.sense = SliderShape::of(self.kind, x).map_or(0.0, |shape| orientation(&shape, positions));
         self
+    }
+
+    /// Turns the cranks of the targets that have their own angles by `tau`; `false` if the loop is open there.
+    fn turned(
+        &self,
+        sign: f64,
+        (state, tau): (&Positions, &[f64]),
+        to: &Unknowns,
+        out: &mut Positions,
+    ) -> bool {
+        let Some(shape) = SliderShape::of(self.kind, to) else { return false };
+        out.clone_from(state);
+        for (j, ([e, u], tau)) in out.iter_mut().zip(tau).enumerate() {
+            if !self.own.has(j) {
+                continue;
+            }
+            *e *= Complex::from_polar(1.0, *tau);
+            *e /= e.norm();
+            let Some(direction) = shape.coupler_direction(*e, sign) else { return false };
+            *u = direction;
+        }
+        true
     }
 
     fn forward(&self) -> f64 {
@@ -153,7 +202,12 @@ impl<const R: usize> SliderFit<'_, R> {
                     for (out, by) in gradient.iter_mut().zip(miss.by_shape) {
                         *out -= back * by;
                     }
-                    add_turn(&mut gradient, by_crank - back * miss.by_crank, shape, *offset);
+                    let by_turn = by_crank - back * miss.by_crank;
+                    if self.own.has(j) {
+                        *own = Some((j, by_turn));
+                    } else {
+                        add_turn(&mut gradient, by_turn, shape, *offset);
+                    }
                 }
                 Angles::Free | Angles::Prescribed(..) => {}
             }
@@ -168,7 +222,7 @@ pub fn settle(shape: &SliderShape, positions: &mut Positions) -> bool {
 }
 
 /// Returns the angle that prescribed increments are added to.
-fn base_angle(x: &Unknowns, shape: &SliderShape, offset: AngleOffset) -> f64 {
+pub fn base_angle(x: &Unknowns, shape: &SliderShape, offset: AngleOffset) -> f64 {
     match (offset, shape.closure) {
         (AngleOffset::Free, _) => x[OFFSET],
         (AngleOffset::Fixed, _) => 0.0,
@@ -219,7 +273,8 @@ fn tangent_of(miss: &Miss) -> Option<[f64; 2]> {
 }
 
 impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
-    /// The positions; of prescribed crank angles they follow from the unknowns and are empty.
+    /// The positions; of prescribed crank angles they follow from the unknowns, and only the cranks of targets that have their own
+    /// angles are read.
     type State = Positions;
 
     fn points(&self) -> usize {
@@ -234,9 +289,9 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
         let shape = SliderShape::of(self.kind, x)?;
         computed(self.weights.len());
         if let Some(outputs) = self.outputs {
-            return self.cost_of_outputs(outputs, x, &shape);
+            return self.cost_of_outputs(outputs, (x, state), &shape, 1.0);
         }
-        let given = if self.is_free() { None } else { Some(self.prescribed(x, &shape)?) };
+        let given = if self.is_free() { None } else { Some(self.prescribed(x, &shape, state)?) };
         let state = given.as_ref().unwrap_or(state);
         let each = state.iter().zip(self.points).zip(self.weights);
         let mut cost: f64 =
@@ -258,11 +313,11 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
         let Some(shape) = SliderShape::of(self.kind, x) else { return false };
         computed(self.weights.len());
         if let Some(outputs) = self.outputs {
-            return self.linearise_outputs(outputs, x, &shape, each);
+            return self.linearise_outputs(outputs, (x, state), (&shape, 1.0), each);
         }
         let given = match &self.angles {
             Angles::Free => None,
-            Angles::Prescribed(..) => match self.prescribed(x, &shape) {
+            Angles::Prescribed(..) => match self.prescribed(x, &shape, state) {
                 Some(given) => Some(given),
                 None => return false,
             },
@@ -290,7 +345,13 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
                     if miss.by_coupler == 0.0 {
                         return false;
                     }
-                    (coupler_turn / miss.by_coupler, 1.0 / miss.by_coupler, zero, 0.0)
+                    let (back, turn_back) = (coupler_turn / miss.by_coupler, 1.0 / miss.by_coupler);
+                    match self.own.has(j) {
+                        true => {
+                            (back, turn_back, back * miss.by_crank - crank_turn, turn_back * miss.by_crank)
+                        }
+                        false => (back, turn_back, zero, 0.0),
+                    }
                 }
             };
             let mut block = PointBlock {
@@ -304,10 +365,14 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
                 let column = back * by - direct;
                 (jacobian[0][k], jacobian[1][k]) = (column.re, column.im);
             }
-            if let Angles::Prescribed(_, offset, _) = &self.angles {
+            let common = match &self.angles {
+                Angles::Prescribed(_, offset, _) if !self.own.has(j) => Some(*offset),
+                Angles::Prescribed(..) | Angles::Free => None,
+            };
+            if let Some(offset) = common {
                 let by_turn = back * miss.by_crank - crank_turn;
-                add_turn(&mut jacobian[0], by_turn.re, &shape, *offset);
-                add_turn(&mut jacobian[1], by_turn.im, &shape, *offset);
+                add_turn(&mut jacobian[0], by_turn.re, &shape, offset);
+                add_turn(&mut jacobian[1], by_turn.im, &shape, offset);
             }
             block.residual[..2].copy_from_slice(&xy(target - shape.coupler_point(*position)));
             block.tangent[..2].copy_from_slice(&xy(tangent));
@@ -320,8 +385,8 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
                     *out = length * turn_back * by;
                 }
                 row[FRAME] = -length;
-                if let Angles::Prescribed(_, offset, _) = &self.angles {
-                    add_turn(row, length * turn_back * miss.by_crank, &shape, *offset);
+                if let Some(offset) = common {
+                    add_turn(row, length * turn_back * miss.by_crank, &shape, offset);
                 }
             }
             each(&block);
@@ -337,8 +402,9 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
         to: &Unknowns,
         out: &mut Positions,
     ) -> bool {
-        if !self.is_free() {
-            return true;
+        if let Angles::Prescribed(_, _, assembly) = &self.angles {
+            return matches!(self.own, OwnAngles::None)
+                || self.turned(assembly.sign(), (state, tau), to, out);
         }
         let shapes = (SliderShape::of(self.kind, from), SliderShape::of(self.kind, to));
         let (Some(from), Some(to)) = shapes else { return false };
@@ -365,7 +431,7 @@ impl<const R: usize> BlockLeastSquares<UNKNOWNS, R> for SliderFit<'_, R> {
 
     fn constraints(&self, x: &Unknowns, state: &Positions, each: &mut EachConstraint<'_, UNKNOWNS>) {
         let Some(shape) = SliderShape::of(self.kind, x) else { return };
-        let given = if self.is_free() { None } else { self.prescribed(x, &shape) };
+        let given = if self.is_free() { None } else { self.prescribed(x, &shape, state) };
         let at = given.as_ref().unwrap_or(state);
         self.limits.each(&shape, x[FRAME], at, self.weights.len(), &mut |bar| {
             each(bar.value, &|| self.row(&bar, &shape, at));

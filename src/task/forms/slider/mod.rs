@@ -10,6 +10,7 @@
 //! | [`fit`] | the fit to the points of a path, or to the places and angles of a motion |
 //! | [`limits`] | bounds of the unknowns, and inequalities of the requirements |
 //! | [`output`] | the errors of a function's output |
+//! | [`ranged`] | the fit to a function with free ranges |
 //! | `regions` | the regions of pivots and pins |
 //! | [`shape`] | the closure with its derivatives by the position and by the unknowns |
 //! | `sides` | limits of the coupler's sides and of the ground |
@@ -20,6 +21,7 @@ pub mod ends;
 pub mod fit;
 pub mod limits;
 pub mod output;
+pub mod ranged;
 mod regions;
 pub mod shape;
 mod sides;

@@ -8,7 +8,8 @@
 //! angle of the block                   m = arg u, from the ground line arg u - arg(B - A)
 //! ```
 //!
-//! and the error of a target W (o_j - m - beta), with the frame beta an unknown or 0. As u follows from the unknowns, dm/dx_k =
+//! and the error of a target W (k o_j - m - beta)/k, with the frame beta an unknown or 0, and the scale k of the outputs 1 or, where
+//! their range is free, an unknown too. As u follows from the unknowns, dm/dx_k =
 //! m_k - m_u G_k/G_w and dm/dphi = m_phi - m_u G_phi/G_w.
 
 use super::fit::{SliderFit, add_turn};
@@ -16,6 +17,7 @@ use super::shape::{Closure, FRAME, Miss, SHAPE, SliderShape, UNKNOWNS, Unknowns}
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{Complex, cross, dot, turned, xy};
 use crate::numbers::optimise::levenberg_marquardt::PointBlock;
+use crate::task::forms::torus::Positions;
 use crate::task::{Output, Problem};
 
 /// The outputs of a function, as a fit sees them.
@@ -112,9 +114,9 @@ impl Outputs {
         }
     }
 
-    /// Returns W (o - m - beta) of a target.
-    fn residual(&self, (j, sign): (usize, f64), measured: f64, frame: f64) -> f64 {
-        self.weight * self.apart(sign * self.wanted[j] - measured - frame)
+    /// Returns W (k o - m - beta)/k of a target.
+    fn residual(&self, (j, sign): (usize, f64), measured: f64, (frame, k): (f64, f64)) -> f64 {
+        self.weight * self.apart(sign * k * self.wanted[j] - measured - frame) / k
     }
 }
 
@@ -123,15 +125,16 @@ impl<const R: usize> SliderFit<'_, R> {
     pub(super) fn cost_of_outputs(
         &self,
         outputs: &Outputs,
-        x: &Unknowns,
+        (x, state): (&Unknowns, &Positions),
         shape: &SliderShape,
+        k: f64,
     ) -> Option<f64> {
-        let positions = self.prescribed(x, shape)?;
+        let positions = self.prescribed(x, shape, state)?;
         let each = positions.iter().zip(self.weights).enumerate();
         let cost: f64 = each
             .map(|(j, (position, weight))| {
                 let measured = outputs.measured(shape, *position);
-                weight * outputs.residual((j, self.sign), measured, x[FRAME]).powi(2)
+                weight * outputs.residual((j, self.sign), measured, (x[FRAME], k)).powi(2)
             })
             .sum();
         cost.is_finite().then_some(cost)
@@ -141,11 +144,12 @@ impl<const R: usize> SliderFit<'_, R> {
     pub(super) fn linearise_outputs(
         &self,
         outputs: &Outputs,
-        x: &Unknowns,
-        shape: &SliderShape,
+        (x, state): (&Unknowns, &Positions),
+        (shape, k): (&SliderShape, f64),
         each: &mut dyn FnMut(&PointBlock<UNKNOWNS, R>),
     ) -> bool {
-        let Some(positions) = self.prescribed(x, shape) else { return false };
+        let Some(positions) = self.prescribed(x, shape, state) else { return false };
+        let length = outputs.weight / k;
         for (j, (position, weight)) in positions.iter().zip(self.weights).enumerate() {
             let Miss { by_crank, by_coupler, by_shape, .. } = shape.miss(*position);
             if by_coupler == 0.0 {
@@ -159,14 +163,18 @@ impl<const R: usize> SliderFit<'_, R> {
                 tangent: [0.0; R],
                 weight: *weight,
             };
-            block.residual[0] = outputs.residual((j, self.sign), measure.value, x[FRAME]);
+            block.residual[0] = outputs.residual((j, self.sign), measure.value, (x[FRAME], k));
             let row = &mut block.jacobian[0];
-            for (k, (direct, miss)) in measure.by_shape.into_iter().zip(by_shape).enumerate() {
-                row[k] = outputs.weight * (back * miss - direct);
+            for (out, (direct, miss)) in row.iter_mut().zip(measure.by_shape.into_iter().zip(by_shape)) {
+                *out = length * (back * miss - direct);
             }
-            row[FRAME] = -outputs.weight;
-            let by_turn = outputs.weight * (back * by_crank - measure.by_crank);
-            add_turn(row, by_turn, shape, self.offset());
+            row[FRAME] = -length;
+            let by_turn = length * (back * by_crank - measure.by_crank);
+            if self.own.has(j) {
+                block.tangent[0] = by_turn;
+            } else {
+                add_turn(row, by_turn, shape, self.offset());
+            }
             each(&block);
         }
         true

@@ -1,6 +1,6 @@
 //! Derivatives against differences, and the closure against the position in closed form.
 
-use super::fit::{Angles, BodyAngles, SliderFit};
+use super::fit::{Angles, BodyAngles, OwnAngles, SliderFit};
 use super::limits::Limited;
 use super::output::Outputs;
 use super::shape::{SliderShape, Unknowns};
@@ -93,7 +93,10 @@ fn derivatives_agree_with_differences() {
             let body = BodyAngles { angles: (0..6).map(angle).collect(), weight: 0.7 };
             for angles in [Angles::Free, Angles::Prescribed(phases, offset, assembly)] {
                 let is_free = matches!(angles, Angles::Free);
-                let state = if is_free { positions.clone() } else { Vec::new() };
+                // Of prescribed crank angles every other time two targets have their own.
+                let own =
+                    if is_free || case % 2 == 0 { Vec::new() } else { (0..6).map(|j| j % 4 == 1).collect() };
+                let state = if is_free || !own.is_empty() { positions.clone() } else { Vec::new() };
                 let path = SliderFit::<2> {
                     kind,
                     points: &points,
@@ -102,6 +105,7 @@ fn derivatives_agree_with_differences() {
                     outputs: None,
                     sign: 1.0,
                     angles: angles.clone(),
+                    own: if own.is_empty() { OwnAngles::None } else { OwnAngles::Of(&own) },
                     limits: &limits,
                     sense: 1.0,
                     ends_meet: false,
@@ -114,6 +118,7 @@ fn derivatives_agree_with_differences() {
                     outputs: None,
                     sign: 1.0,
                     angles: angles.clone(),
+                    own: if own.is_empty() { OwnAngles::None } else { OwnAngles::Of(&own) },
                     limits: &limits,
                     sense: 1.0,
                     ends_meet: false,
@@ -133,6 +138,7 @@ fn derivatives_agree_with_differences() {
                     outputs: Some(&outputs),
                     sign,
                     angles,
+                    own: OwnAngles::None,
                     limits: &limits,
                     sense: 0.0,
                     ends_meet: false,
@@ -142,7 +148,7 @@ fn derivatives_agree_with_differences() {
                 {
                     assert!(error < 2e-8, "{kind} {case} {:?} {offset:?}: {error}", outputs.kind);
                 }
-                let along = if is_free { 1e-6 } else { 0.0 };
+                let along = if is_free || !own.is_empty() { 1e-6 } else { 0.0 };
                 let errors = [
                     derivative_error(&path, &turned, &state, &[1e-6; 10], along),
                     derivative_error(&motion, &turned, &state, &[1e-6; 10], along),

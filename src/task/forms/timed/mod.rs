@@ -16,6 +16,8 @@
 mod output;
 mod own;
 
+pub use own::ATTACHED;
+
 use super::design_space::{ChainRule, DESIGN, Design, DesignSpace, SHAPE, Shape};
 use super::fits::{design_of, own_frame, own_scales};
 use super::rows::{Motion, Place, Requirements, Row};

@@ -14,7 +14,7 @@ use crate::task::forms::torus::Positions;
 use std::f64::consts::TAU;
 
 /// Samples between two timed targets among which the nearest point to an untimed one is looked for.
-const ATTACHED: usize = 48;
+pub const ATTACHED: usize = 48;
 
 /// Returns the directions of crank and coupler where the crank lies so.
 fn position_at(kernel: &Kernel, crank: Complex) -> [Complex; 2] {
@@ -59,17 +59,6 @@ impl<const N: usize, const R: usize> TimedFit<'_, N, R> {
         let shape = self.space.shape(design)?;
         let kernel = shape.kernel(self.setting.assembly);
         let angles = self.crank_angles(design, &shape);
-        let n = angles.len();
-        // The next timed target in a direction, in steps around the list, and its crank angle on the way there.
-        let turn = if angles[n - 1] < angles[0] { -TAU } else { TAU };
-        let neighbour = |j: usize, step: isize| {
-            (1..=n as isize).find_map(|k| {
-                let place = j as isize + step * k;
-                let at = place.rem_euclid(n as isize) as usize;
-                let turns = place.div_euclid(n as isize) as f64;
-                (!task.is_untimed(at)).then(|| angles[at] + turn * turns)
-            })
-        };
         let position = |j: usize| {
             let at = |angle: f64| {
                 let crank = Complex::from_polar(1.0, angle);
@@ -79,13 +68,13 @@ impl<const N: usize, const R: usize> TimedFit<'_, N, R> {
             if !task.is_untimed(j) {
                 return at(angles[j]).map(|_| position_at(&kernel, Complex::from_polar(1.0, angles[j])));
             }
-            let (from, to) = (neighbour(j, -1)?, neighbour(j, 1)?);
+            let [from, to] = task.between_timed(&angles, TAU, j)?;
             let samples = (1..ATTACHED).map(|i| from + (to - from) * i as f64 / ATTACHED as f64);
             let nearest = samples.filter_map(|angle| Some((at(angle)?, angle)));
             let (_, angle) = nearest.min_by(|one, other| one.0.total_cmp(&other.0))?;
             Some(position_at(&kernel, Complex::from_polar(1.0, angle)))
         };
-        (0..n).map(position).collect()
+        (0..angles.len()).map(position).collect()
     }
 
     /// As `BlockLeastSquares::retract`, of targets of which some have their own crank angle.
