@@ -22,6 +22,7 @@ async function part(name) {
 const { moved, ofStroke, ofText, segmentAt } = await part("target");
 const {
   boxOfSides,
+  canBeExact,
   drawnAnew,
   extentTimes,
   isSameButForName,
@@ -427,6 +428,41 @@ test("more points than can be searched become fewer along the same path; an exac
   assert.ok(task.method === undefined && task.tolerance > 0 && said.includes("instead of exactly"));
   assert.equal(nearestInstead(nine, { ...answer, candidates: [{ accepted: true }] }), null);
   assert.equal(nearestInstead({ ...nine, method: undefined }, answer), null);
+});
+
+test("all linkages are told where there are finitely many: nine points, five poses, mixtures, given pivots", () => {
+  const task = (places, poses, kept) => ({
+    name: "exact",
+    points: Array.from({ length: places + poses }, (_, i) => [i, i * i]),
+    closed: false,
+    types: [],
+    seed: 1,
+    kept,
+    ...(poses > 0 && { body: { angle_deg: [...Array(poses).fill(10), ...Array(places).fill(null)] } }),
+  });
+  for (const [places, poses] of [
+    [9, 0],
+    [8, 1],
+    [6, 2],
+    [4, 3],
+    [2, 4],
+    [0, 5],
+  ])
+    assert.ok(canBeExact(task(places, poses)));
+  for (const [places, poses] of [
+    [8, 0],
+    [10, 0],
+    [1, 4],
+    [1, 5],
+    [0, 4],
+  ])
+    assert.ok(!canBeExact(task(places, poses)));
+  const [a, b] = [{ "design.A": "[0, -20]" }, { "design.B": "[40, -20]" }];
+  assert.ok(canBeExact(task(7, 0, a)) && canBeExact(task(5, 0, { ...a, ...b })) && canBeExact(task(2, 3, b)));
+  assert.ok(!canBeExact(task(9, 0, a)) && !canBeExact(task(0, 4, a)));
+  // A range is no place.
+  assert.ok(canBeExact(task(9, 0, { "design.A": "[[0, 10], [-20, 20]]" })));
+  assert.ok(!canBeExact({ ...task(0, 5), timing: { crank_deg: [0, 1, 2, 3, 4], offset: "free" } }));
 });
 
 test("a linkage keeps its number while it follows", () => {

@@ -52,6 +52,7 @@
 //! | [`picks`] | the picks beside the closest candidate, in words |
 //! | `output` | the words for the output of a function: the angle of a follower or a block, or the place of a slider |
 //! | [`plot`] | a small plot for the terminal: the target points and the coupler curve, with one scale for both axes |
+//! | [`pose_curves`] | the circle-point and centre-point curves of four poses: where pins and fixed pivots can go |
 //! | [`practicality`] | the practicality of a linkage as text: layers, distances, sensitivities |
 //! | [`price`] | the costs of requirements and the relaxations that would help, in words |
 //! | [`scale`] | scales of charts: figures mapped to the range from 0 to 1, in proportion or by logarithms, with round values for ticks |
@@ -99,6 +100,7 @@ mod output;
 mod parts;
 mod picks;
 pub mod plot;
+pub mod pose_curves;
 pub mod practicality;
 pub mod price;
 mod scale;

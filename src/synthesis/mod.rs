@@ -35,6 +35,7 @@
 //! | [`picks`] | the smallest and the best transmitting linkage whose error is nearly that of the closest candidate |
 //! | [`plan`] | the plan of a search: the phases of each method, in their order |
 //! | [`polish`] | polish after a search by least squares: minimises the largest deviation, brings answers within tolerances, and gains the last digits of answers on which a limit is active |
+//! | [`pose_curves`] | the circle-point and centre-point curves of four poses, with how well linkages of their dyads transmit |
 //! | [`population`] | the population searches on the design vector or in reduced variables: genetic, differential evolution, and uniform sampling as the baseline for comparison |
 //! | [`reassign`] | correspondence between target points and coupler curve: assigns the points to curve samples in their order, by dynamic programming |
 //! | [`reduced_fitness`] | fitness of a population search in reduced variables: ratios and at most two angles in, violation and cost out |
@@ -84,6 +85,7 @@ pub mod picks;
 pub mod plan;
 pub mod polish;
 pub mod population;
+pub mod pose_curves;
 mod reassign;
 pub mod reduced_fitness;
 mod relaxed;

@@ -222,5 +222,7 @@ export function fillRequirements(task: Task) {
   input("each-weight").checked = task.weights !== undefined;
   input("exact").checked = isExact(task);
   input("exact").disabled = !canBeExact(task) && !isExact(task);
-  input("exact").title = canBeExact(task) ? "" : "Needs exactly nine points and free timing";
+  input("exact").title = canBeExact(task)
+    ? ""
+    : "Needs nine points, or five poses; a place alone counts half one, a given pivot two points";
 }

@@ -4,13 +4,22 @@ import { unitAfter } from "./labels";
 import type { Answer, AnyAsk, Box, Linkage, Point, Shown, Task } from "./messages";
 import { jams } from "./words";
 
-/** So many points have all their linkages told. */
-export const NINE = 9;
+/** So many points have finitely many linkages; with a body that has its angle there a pose counts twice, and one more is met. */
+const EXACT_POINTS = 9;
+/** A place that is given, in place of a range. */
+const FIXED = /^\[[^[\],]+,[^[\],]+\]$/;
 export const EXACT = "continuation";
 
 export const isExact = (task: Task) => task.method === EXACT;
-export const canBeExact = (task: Task) =>
-  task.points.length === NINE && ![task.timing, task.body, task.function, task.mechanism].some(Boolean);
+/** Whether as many points, poses and fixed pivots are asked for as have finitely many linkages. */
+export function canBeExact({ points, timing, body, function: pairs, mechanism, kept }: Task): boolean {
+  if (timing || pairs || mechanism) return false;
+  const poses = body?.angle_deg.filter((deg) => Number.isFinite(deg)).length ?? 0;
+  const pivots = ["design.A", "design.B"].filter((key) => FIXED.test(kept?.[key] ?? "")).length;
+  // With one pivot and more poses one link would have too much to meet and the other too little.
+  if (pivots === 1 && poses > 3) return false;
+  return points.length + poses + 2 * pivots === EXACT_POINTS + (poses > 0 ? 1 : 0);
+}
 
 /** Crank angles spread evenly over a turn, or over half a turn of an open path. */
 function evenAngles(n: number, closed: boolean): number[] {

@@ -156,6 +156,7 @@ export interface Wire {
   CrankKeys: CrankKeys;
   CrankLinkage: CrankLinkage;
   CrankLinkage2: CrankLinkage2;
+  CurvePlace: CurvePlace;
   Defect: Defect;
   Details: Details;
   DetailsAsk: DetailsAsk;
@@ -556,6 +557,10 @@ export interface PinMap {
    */
   best: [[number, number], [number, number]][];
   /**
+   * Of four poses the circle-point and centre-point curves, in stretches without a gap.
+   */
+  curves?: CurvePlace[][];
+  /**
    * Places a side of the square.
    */
   grid: number;
@@ -569,6 +574,30 @@ export interface PinMap {
    * of the size, evenly in their logarithms.
    */
   levels: string;
+}
+/**
+ * A place of the circle-point and centre-point curves of four poses.
+ */
+export interface CurvePlace {
+  /**
+   * The worst transmission angle between the poses, in degrees, of the best linkage without defects that has its pin here;
+   * absent if there is none.
+   */
+  deg?: number;
+  /**
+   * The circle point: the pin in the body's frame.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  pin: [number, number];
+  /**
+   * The centre point: its fixed pivot.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  pivot: [number, number];
 }
 /**
  * The linkages through nine points, counted.

@@ -1,7 +1,9 @@
-//! The map of the places of a pin: how nearly each point of the body moves on a circle about a fixed pivot.
+//! The map of the places of a pin: how nearly each point of the body moves on a circle about a fixed pivot; and of four poses
+//! the curves of the pins that stay on circles, and of their pivots.
 
-use crate::mechanism::{Dyad, Pose};
+use crate::mechanism::{Dyad, Pose, xy};
 use crate::synthesis::dyads::{CircleMap, circle_minima};
+use crate::synthesis::pose_curves::{Fineness, PosePlace, pose_curves};
 use crate::task::Problem;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -17,6 +19,8 @@ const BEST: usize = 8;
 /// The errors of the lowest and the highest level in sizes of the poses, as powers of ten, and the levels between them.
 const RANGE: [f64; 2] = [-3.0, -0.5];
 const LEVELS: u8 = 56;
+/// The parts of the poses' size to which places of the curves are rounded.
+const DIGITS: f64 = 1e5;
 /// The letter of the lowest level; the others follow it, and none of them is a quote or a backslash.
 const LOWEST: u8 = b'#';
 
@@ -33,6 +37,35 @@ pub struct PinMap {
     pub levels: String,
     /// The places of least error, the best first: the pin in the body's frame and the fixed pivot of its circle.
     pub best: Vec<[[f64; 2]; 2]>,
+    /// Of four poses the circle-point and centre-point curves, in stretches without a gap.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curves: Vec<Vec<CurvePlace>>,
+}
+
+/// A place of the circle-point and centre-point curves of four poses.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct CurvePlace {
+    /// The circle point: the pin in the body's frame.
+    pub pin: [f64; 2],
+    /// The centre point: its fixed pivot.
+    pub pivot: [f64; 2],
+    /// The worst transmission angle between the poses, in degrees, of the best linkage without defects that has its pin here;
+    /// absent if there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deg: Option<f64>,
+}
+
+/// Returns the curves of a problem; empty where there are none.
+fn curves(problem: &Problem) -> Vec<Vec<CurvePlace>> {
+    let size = problem.task().size();
+    let rounded = |x: f64| (x / size * DIGITS).round() / DIGITS * size;
+    let place = |place: &PosePlace| CurvePlace {
+        pin: xy(place.pin).map(rounded),
+        pivot: xy(place.pivot).map(rounded),
+        deg: place.transmission_deg.map(|deg| (10.0 * deg).round() / 10.0),
+    };
+    let stretches = pose_curves(problem, Fineness::BRIEF).unwrap_or_default();
+    stretches.iter().map(|stretch| stretch.iter().map(place).collect()).collect()
 }
 
 impl PinMap {
@@ -64,6 +97,7 @@ impl PinMap {
             half,
             levels: map.rms().iter().map(letter).collect(),
             best: best.collect(),
+            curves: curves(problem),
         })
     }
 }
@@ -88,6 +122,22 @@ mod tests {
         let level = map.levels.as_bytes()[near(y) * map.grid + near(x)];
         let mean = map.levels.bytes().map(u64::from).sum::<u64>() / map.levels.len() as u64;
         assert!(u64::from(level) + 10 < mean, "{level} beside {mean}");
+    }
+
+    #[test]
+    fn four_poses_have_their_curves_and_five_have_none() {
+        let poses = ["[0, 0, 0]", "[10, 12, 12]", "[22, 20, 31]", "[38, 22, 49]", "[55, 18, 66]"];
+        let map = |n: usize| {
+            let text = format!("format = 1\n[task.motion]\nposes = [{}]\n", poses[..n].join(", "));
+            let file = parse("p", &text, None, &[]).expect("a problem");
+            PinMap::of(&Problem::new(file.spec).expect("a task")).expect("a map")
+        };
+        assert!(map(5).curves.is_empty());
+        let curves = map(4).curves;
+        let places: Vec<&CurvePlace> = curves.iter().flatten().collect();
+        assert!(places.len() > 100, "{}", places.len());
+        assert!(places.iter().any(|place| place.deg.is_some_and(|deg| deg > 20.0)));
+        assert!(places.iter().any(|place| place.deg.is_none()));
     }
 
     #[test]

@@ -494,6 +494,33 @@ mod tests {
     }
 
     #[test]
+    fn poses_and_points_have_all_their_linkages_counted_and_these_follow() {
+        let (mut tab, told) = tab();
+        // Those of problems/motion/four-poses-two-points.toml, of which one place is moved.
+        let ask = |version: u64, moved: f64| {
+            let points = [
+                [0.72787, -0.1739],
+                [0.523672 + moved, -0.207845],
+                [0.029195, -0.498199],
+                [-0.577544, -0.703682],
+                [-0.141316, -1.121787],
+                [0.293103, -1.140891],
+            ];
+            let angle_deg =
+                [Some(-122.350967), None, None, Some(-154.25972), Some(178.888372), Some(-179.674256)];
+            let body = serde_json::json!({ "angle_deg": angle_deg });
+            serde_json::json!({ "version": version, "points": points, "body": body, "method": "continuation" }).to_string()
+        };
+        for (version, moved) in [(1, 0.0), (2, 1e-4)] {
+            tab.take(&ask(version, moved));
+            let said = answer(&told);
+            let counted = &said["nine"];
+            assert_eq!((&counted["classes"], &counted["real"]), (&30.into(), &12.into()), "{said}");
+            assert!(said["candidates"].as_array().is_some_and(|all| all.len() == 12), "{said}");
+        }
+    }
+
+    #[test]
     fn points_without_exact_linkages_show_none_of_other_points_and_a_closed_tab_follows_no_more() {
         let (mut tab, told) = tab();
         tab.take(r#"{"version":1,"points":[[0,0],[1,1],[2,1.5],[3,1],[2,-1]],"closed":true}"#);

@@ -1,11 +1,12 @@
 //! The sections of the report page, in their order.
 
-use super::page::{list, paragraph, section};
+use super::page::{drawn, list, paragraph, section};
 use super::{Extent, Shown, candidate, data, exact, picks, practicality, proof, table};
 use crate::files::name;
 use crate::mechanism::article;
 use crate::record::{Candidate, Record};
 use crate::report::certificate as certificate_words;
+use crate::report::pose_curves::pose_curves_svg;
 use crate::report::text::{capitalised, clean, significant};
 use crate::report::{price, table as text_table, words};
 use maud::{Markup, PreEscaped, html};
@@ -20,6 +21,7 @@ pub(super) fn body(record: &Record, drawings: &[&str], extent: Extent, shown: Sh
             (table::candidates(record, shown))
             (picks::picks(record, extent))
             (candidate::articles(record, drawings, shown))
+            (pose_curves(record, extent))
             (practicality::practicality(record, extent))
             (proof::proof(record))
             (exact::exact(record))
@@ -46,6 +48,18 @@ const LIVE: PreEscaped<&str> = PreEscaped(
 </section>
 "#,
 );
+
+/// Returns the curves of pins and pivots of a motion of four poses; nothing of other tasks, and of a brief page.
+fn pose_curves(record: &Record, extent: Extent) -> Markup {
+    let drawing = if extent == Extent::Full { pose_curves_svg(record) } else { None };
+    let Some(drawing) = drawing else { return Markup::default() };
+    html! {
+        section.card id="pose-curves" {
+            h2 { "Where pins and pivots can go" }
+            (drawn(&drawing))
+        } "\n"
+    }
+}
 
 /// Returns the table of the targets, filled by the script.
 fn points(record: &Record) -> Markup {

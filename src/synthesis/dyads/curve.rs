@@ -35,11 +35,42 @@ const FARTHEST: f64 = 1e3;
 /// None if more than a curve of dyads meets the poses (equal ones among them, equal angles at all of them, turning about
 /// one point).
 pub fn through_four_curve(poses: &[Pose; 4], samples: usize) -> Vec<Dyad> {
+    four_curve_strands(poses, samples).into_iter().flat_map(|strand| strand.dyads).collect()
+}
+
+/// A stretch of the curve of dyads on which no place is left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strand {
+    /// The dyads in their order.
+    pub dyads: Vec<Dyad>,
+    /// Whether it is a whole circuit: the first dyad follows the last one.
+    pub is_closed: bool,
+}
+
+/// As [`through_four_curve`], in strands.
+pub fn four_curve_strands(poses: &[Pose; 4], samples: usize) -> Vec<Strand> {
     let Some(scale) = Scale::of(poses) else { return Vec::new() };
     let poses = poses.map(|pose| scale.pose(&pose));
     let Some(compatibility) = Compatibility::of(&poses) else { return Vec::new() };
-    let turns = compatibility.circuits(samples);
-    turns.into_iter().filter_map(|turns| compatibility.dyad(&poses, turns)).map(|d| scale.back(d)).collect()
+    let mut strands = Vec::new();
+    for circuit in compatibility.circuits(samples) {
+        let dyads =
+            circuit.iter().map(|turns| compatibility.dyad(&poses, *turns).map(|dyad| scale.back(dyad)));
+        strands.extend(unbroken(dyads.collect()));
+    }
+    strands
+}
+
+/// Returns the strands of a circuit, the last place of which comes before its first, between places that are left out.
+fn unbroken(circuit: Vec<Option<Dyad>>) -> Vec<Strand> {
+    let Some(gap) = circuit.iter().position(Option::is_none) else {
+        return vec![Strand { dyads: circuit.into_iter().flatten().collect(), is_closed: true }];
+    };
+    let around: Vec<Option<Dyad>> = [&circuit[gap..], &circuit[..gap]].concat();
+    let strands = around.split(Option::is_none).filter(|strand| !strand.is_empty());
+    strands
+        .map(|strand| Strand { dyads: strand.iter().copied().flatten().collect(), is_closed: false })
+        .collect()
 }
 
 /// The compatibility linkage, its poses 1 to 3 numbered so that the first link is the shortest.
@@ -72,8 +103,8 @@ impl Compatibility {
             .then(|| Compatibility { links: order.map(|k| links[k]), equations: order.map(|k| by_number[k]) })
     }
 
-    /// Returns positions [E1, E2, E3] at up to `samples` steps along the linkage's circuits.
-    fn circuits(&self, samples: usize) -> Vec<[Complex; 3]> {
+    /// Returns positions [E1, E2, E3] at up to `samples` steps along each of the linkage's circuits.
+    fn circuits(&self, samples: usize) -> Vec<Vec<[Complex; 3]>> {
         let [drive, one, other] = self.links.map(|link| link.norm());
         let ground: Complex = self.links.iter().sum();
         // |V|^2 = |S|^2 + |D1|^2 - 2 |S||D1| cos phi must lie between the squares of |D2| -+ |D3|.
@@ -85,35 +116,28 @@ impl Compatibility {
         let limits = [high.clamp(-1.0, 1.0).acos(), low.clamp(-1.0, 1.0).acos()];
         let full = limits == [0.0, PI] || product == 0.0;
         let step = |count: usize| move |k: usize| TAU * (k as f64 + 0.5) / count as f64;
-        let mut found = Vec::with_capacity(samples);
-        let mut push = |phi: f64, side: f64| found.extend(self.position(ground, phi, side));
+        let at = |(phi, side): (f64, f64)| self.position(ground, phi, side);
+        let all = |places: Vec<(f64, f64)>| places.into_iter().filter_map(at).collect::<Vec<_>>();
         match limits {
             _ if full => {
                 let half = samples / 2;
-                for side in [1.0, -1.0] {
-                    (0..half).map(step(half)).for_each(|phi| push(phi, side));
-                }
+                [1.0, -1.0].map(|side| all((0..half).map(step(half)).map(|phi| (phi, side)).collect())).into()
             }
             // One arc about phi = 0 or about phi = pi, out on one side and back on the other.
             [least, most] if least == 0.0 || most == PI => {
                 let (middle, reach) = if least == 0.0 { (0.0, most) } else { (PI, PI - least) };
-                for psi in (0..samples).map(step(samples)) {
-                    push(middle + reach * psi.cos(), psi.sin().signum());
-                }
+                let place = |psi: f64| (middle + reach * psi.cos(), psi.sin().signum());
+                vec![all((0..samples).map(step(samples)).map(place).collect())]
             }
             [least, most] => {
                 let half = samples / 2;
-                for arc in [1.0, -1.0] {
-                    for psi in (0..half).map(step(half)) {
-                        push(
-                            arc * (0.5 * (least + most) + 0.5 * (most - least) * psi.cos()),
-                            psi.sin().signum(),
-                        );
-                    }
-                }
+                let on = |arc: f64| {
+                    let angle = |psi: f64| arc * (0.5 * (least + most) + 0.5 * (most - least) * psi.cos());
+                    all((0..half).map(step(half)).map(|psi| (angle(psi), psi.sin().signum())).collect())
+                };
+                [1.0, -1.0].map(on).into()
             }
         }
-        found
     }
 
     /// Returns the position at which D1 E1 lies at an angle phi from the ground, on a side; `None` if the loop is open.

@@ -8,7 +8,7 @@
 //! | poses | dyads | function |
 //! |---|---|---|
 //! | 3 | one for each pin, one for each pivot; one slider along each line | [`through_three_from_pin`], [`through_three_from_pivot`], [`pin_on_line_across`] |
-//! | 4 | a curve of them; one slider of each kind | [`through_four_curve`], [`pin_on_line`], [`line_over_pivot`] |
+//! | 4 | a curve of them; one slider of each kind | [`through_four_curve`], [`four_curve_strands`], [`pin_on_line`], [`line_over_pivot`] |
 //! | 5 | 0, 2 or 4 | [`through_five`] |
 //! | more | near ones | [`nearest_in_kernel`], [`circle_minima`], [`circle_fit`], [`through_random_five`], [`pin_on_line`], [`line_over_pivot`], [`pin_on_line_across`] |
 //!
@@ -50,7 +50,7 @@ mod fixture;
 mod tests;
 
 pub use circle::{CircleFit, circle_fit};
-pub use curve::through_four_curve;
+pub use curve::{Strand, four_curve_strands, through_four_curve};
 pub use driving::{Driving, driving_dyad};
 pub use kernel::{nearest_in_kernel, through_five, through_random_five};
 pub use line::{best_from_pivot, through_four_on_line};

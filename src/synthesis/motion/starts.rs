@@ -45,6 +45,22 @@ impl<'a> DyadStarts<'a> {
         DyadStarts { problem, poses, weights, family: freedom(problem) > 0 }
     }
 
+    /// Returns the poses of the targets that give an angle.
+    pub(in crate::synthesis) fn poses(&self) -> &[Pose] {
+        &self.poses
+    }
+
+    /// Returns the linkage of a crank's dyad and a follower's one with its positions at all targets; `None` if they are no
+    /// linkage.
+    pub(in crate::synthesis) fn positions_of(
+        &self,
+        crank: &Dyad,
+        follower: &Dyad,
+    ) -> Option<(Shape, Positions)> {
+        let pair = pair(crank, follower)?;
+        Some((pair.shape, self.positions(&pair)?))
+    }
+
     /// Returns the dyads of a round: those that the poses suggest in the first one, else drawn ones.
     pub(in crate::synthesis) fn dyads(&self, first: bool, stream: &mut Stream) -> Vec<Dyad> {
         let poses = self.poses.as_slice();
