@@ -2,6 +2,7 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | [`balancing`] | balances as they are asked for: a spring or counter-masses, with the text and the file of the result |
 //! | [`building`] | sizes for building: shop data, sizes that go before them, and the usual ones |
 //! | [`certificates`] | certificates and the files beside their record: checkpoints and leaves |
 //! | [`cli`] | the command line: arguments, commands, exit codes |
@@ -13,6 +14,7 @@
 //! | [`suite`] | the suite: benchmark problems whose answer is known, each run from many seeds, and compared with the population searches at equal evaluations and with published answers |
 //! | [`sweep`] | sweeps: a plan of many problems, its shards of jobs, and their merged rows |
 
+pub mod balancing;
 pub mod building;
 pub mod certificates;
 #[cfg(feature = "cli")]
