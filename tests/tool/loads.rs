@@ -216,5 +216,5 @@ fn a_speed_over_the_crank_angle_has_its_acceleration_in_table_csv_and_json() {
     assert!(written.contains("speed_rpm = [[0.0, 60.0], [120.0, 90.0], [240.0, 75.0]]"), "{written}");
     fs::write(folder.path().join("stops.toml"), loads.replace("90]", "0]")).expect("a file");
     let (code, _, stderr) = linkwright(folder.path(), &["check", "stops.toml"]);
-    assert!(code != 0 && stderr.contains("nowhere 0") && stderr.contains("4:22"), "{stderr}");
+    assert!(code != 0 && stderr.contains("nowhere 0") && stderr.contains("4:23"), "{stderr}");
 }
