@@ -68,7 +68,9 @@ fn loads(c: &mut Criterion) {
         });
     });
     group.finish();
-    c.bench_function("figures of a six-bar over a turn", |b| b.iter(|| black_box(&loaded).figures(input)));
+    c.bench_function("figures of a six-bar over a turn", |b| {
+        b.iter(|| black_box(&loaded).figures(&input.into()))
+    });
 }
 
 /// An arm of 300 mm with 1 kg at its end, as the crank of a four-bar, in a spring between its middle and a point 120 mm above its pivot:

@@ -20,11 +20,13 @@ from __future__ import annotations
 
 from ._doors import (
     Analysis,
+    Balance,
     Build,
     Comparison,
     Suite,
     Verification,
     analyze,
+    balance,
     build,
     certify,
     cognates,
@@ -56,6 +58,7 @@ from ._result import Candidate, Front, Result, front, open, synth
 
 __all__ = [
     "Analysis",
+    "Balance",
     "Build",
     "Candidate",
     "Chain",
@@ -74,6 +77,7 @@ __all__ = [
     "Verification",
     "__version__",
     "analyze",
+    "balance",
     "build",
     "certify",
     "cognates",

@@ -176,7 +176,7 @@ def analyze(
     *,
     angle_deg: Any = None,
     cycle: int = 12,
-    omega: float = 0.0,
+    omega: float | None = None,
     alpha: float = 0.0,
     method: Sequence[str] = (),
     all_configurations: bool = False,
@@ -187,7 +187,8 @@ def analyze(
     Args:
         linkage: a linkage, a candidate, a result (its first candidate) or a path.
         angle_deg: the crank angles, degrees from the x axis, shape (n,); or `cycle`: so many over a turn.
-        omega, alpha: speed (rad/s) and acceleration (rad/s^2) of the crank.
+        omega, alpha: speed (rad/s) and acceleration (rad/s^2) of the crank; where `omega` is silent, the speed of the loads
+            (``speed_rpm``, also over the crank angle: then the acceleration follows from it), else 0.
         method: other methods beside: ``natural``, ``algebraic``, ``complex``, ``fixed-point``.
         all_configurations: all four assemblies (t1, t2), not the linkage's own alone.
         loads: the keys of ``[loads]`` in a linkage file, lengths in the linkage's unit, or the path of a loads file; where silent,
@@ -207,6 +208,99 @@ def analyze(
     methods = [method] if isinstance(method, str) else list(method)
     found = _linkwright.analyze(subject, which, angles, cycle, omega, alpha, methods, all_configurations, loads)
     return Analysis(*found)
+
+
+class Balance:
+    """A spring or counter-masses that balance a loaded linkage, with what is left."""
+
+    __slots__ = ("data", "loads", "text")
+
+    #: The figures of ``linkwright balance --json``, in SI units: of a spring ``spring``, ``span``, ``largest``, ``before``,
+    #: ``after``, ``residual_percent``, ``residual_rms_percent``; of counter-masses ``masses``, ``before``, ``after``,
+    #: ``ripple_percent``, ``shaking_percent``.
+    data: dict[str, Any]
+    #: The loads with the balance: the keys of ``[loads]``, lengths in the linkage's unit, as :func:`analyze` takes them.
+    loads: dict[str, Any]
+    #: The text that ``linkwright balance`` prints.
+    text: str
+
+    def __init__(self, json: str, text: str, loads: dict[str, Any]) -> None:
+        from json import loads as parsed
+
+        self.data, self.text, self.loads = parsed(json), text, loads
+
+    def __repr__(self) -> str:
+        return self.text
+
+
+def balance(
+    linkage: Subject | Chain,
+    *,
+    spring: tuple[Any, Any] | None = None,
+    torsion: str | tuple[str, str] | None = None,
+    masses: str | Sequence[str] | None = None,
+    over_deg: tuple[float, float] | None = None,
+    rates: Any = (),
+    least_free_length: float = 0.0,
+    radius: float | None = None,
+    even: str = "torque",
+    omega: float | None = None,
+    loads: Mapping[str, Any] | Path | None = None,
+) -> Balance:
+    """Balances a loaded linkage: by a spring that holds it where it is put, or by counter-masses for an even torque.
+
+    Args:
+        linkage: a linkage, a candidate, a result (its first candidate) or a path.
+        spring: the two ends of a spring: each a joint's name, a fixed point ``(50, 80)``, or a place on a body
+            ``("coupler", (20, 5))``; or `torsion`: the body on which a torsion spring acts, or that and the body that bears it
+            (else the ground); or `masses`: the bodies with counter-masses, ``"crank"``, ``"follower"`` or both. One of the
+            three. Lengths in the linkage's unit.
+        over_deg: the crank angles over which a spring is to hold, degrees; where silent, all that the crank reaches.
+        rates: the rates of the springs that can be bought, N/m or N m/rad; where empty, any.
+        least_free_length: of a spring, in the linkage's unit.
+        radius: the distance of counter-masses from the fixed pivots, in the linkage's unit.
+        even: what counter-masses make even: ``torque``, ``shaking-force`` or ``both``.
+        omega: speed of the crank for counter-masses, rad/s; where silent, that of the loads.
+        loads: as of :func:`analyze`.
+
+    The torque T of a spring of rate k and free length l0 between ends at a distance l is k (l - l0) dl/dphi; rate and free
+    length leave the least root mean square of the static torque. Counter-masses leave the least root mean square over time of
+    the torque or the shaking force less its mean.
+
+    Raises:
+        ProblemError: the linkage has no unit or no loads, a name or a number is refused, or nothing is gained.
+
+    >>> import linkwright as lw
+    >>> lamp = lw.FourBar((0, 0), (500, 0), 300, 520, 400, 100, 450, unit="mm")
+    >>> arm = {"gravity": [0, -9.81], "body": {"crank": {"mass_kg": 1, "center": [300, 0]}}}
+    >>> held = lw.balance(lamp, spring=(("crank", (150, 0)), (0, 120)), over_deg=(20, 70), loads=arm)
+    >>> round(held.data["spring"]["extension"]["rate_N_per_m"], 6)
+    163.5
+    """
+    given = {"spring": spring, "torsion": torsion, "masses": masses}
+    asked = [(means, of) for means, of in given.items() if of is not None]
+    if len(asked) != 1:
+        raise _linkwright.ProblemError("give one of spring=, torsion= and masses=")
+    means, of = asked[0]
+    names = [of] if isinstance(of, str) else [_end(end) for end in of]
+    over = None if over_deg is None else _numbers(over_deg)
+    if over is not None and len(over) != 2:
+        raise _linkwright.ProblemError("over_deg: two crank angles in degrees are needed")
+    subject, which = _split(linkage)
+    (json, text), balanced = _linkwright.balance(
+        subject, which, means, names, over, _numbers(rates), least_free_length, radius, even, omega, loads
+    )
+    return Balance(json, text, balanced)
+
+
+def _end(end: Any) -> str:
+    """Returns an end of a spring, or a body's name, as the command line writes it."""
+    if isinstance(end, str):
+        return end
+    first, second = end
+    if isinstance(first, str):
+        return f"{first}:{_end(second)}"
+    return f"{float(first)!r},{float(second)!r}"
 
 
 def _numbers(given: Any) -> list[float]:
@@ -309,7 +403,12 @@ class Build:
 
 
 def build(
-    linkage: Subject, *, hole: float | None = None, margin: float | None = None, tolerance: float | None = None
+    linkage: Subject,
+    *,
+    hole: float | None = None,
+    margin: float | None = None,
+    tolerance: float | None = None,
+    shop: Mapping[str, Any] | Path | None = None,
 ) -> Build:
     """Works out what it takes to build a linkage.
 
@@ -317,12 +416,14 @@ def build(
         linkage: a linkage, a candidate, a result (its first candidate) or a path.
         hole: the holes' diameter; margin: the material around a hole; tolerance: the standard deviation of every
             dimension. Lengths in the file's unit.
+        shop: the keys of ``[shop]`` in a linkage file, lengths in the linkage's unit, or the path of a shop file; where silent,
+            those of a linkage file that is given by its path. `hole` and `margin` go before them.
 
     Raises:
         ProblemError: the linkage cannot be assembled, or a size is refused.
     """
     subject, which = _split(linkage)
-    data, text = _linkwright.build(subject, which, hole, margin, tolerance)
+    data, text = _linkwright.build(subject, which, hole, margin, tolerance, shop)
     return Build(data, text)
 
 
@@ -377,7 +478,7 @@ def formats() -> list[str]:
     return _linkwright.export_formats()
 
 
-def export(linkage: Subject, format: str, **settings: Any) -> bytes:
+def export(linkage: Subject, format: str, *, shop: Mapping[str, Any] | Path | None = None, **settings: Any) -> bytes:
     """Returns a linkage as a file to build from.
 
     Args:
@@ -385,6 +486,7 @@ def export(linkage: Subject, format: str, **settings: Any) -> bytes:
         format: one of :func:`formats`.
         settings: sizes in millimetres and the like, as ``--set`` of ``linkwright export``: ``scale``, ``unit``,
             ``hole_mm``, ``motor_hole_mm``, ``margin_mm``, ``kerf_mm``, ``thickness_mm``, ``sheet_mm="600x300"``, ..
+        shop: as of :func:`build`; `settings` go before it.
 
     Raises:
         ProblemError: the format or a setting is refused; the text has the remedy.
@@ -395,7 +497,7 @@ def export(linkage: Subject, format: str, **settings: Any) -> bytes:
     """
     subject, which = _split(linkage)
     pairs = [(key, _setting(value)) for key, value in settings.items()]
-    return _linkwright.export(subject, which, format, pairs)[0]
+    return _linkwright.export(subject, which, format, pairs, shop)[0]
 
 
 def _setting(value: Any) -> str:

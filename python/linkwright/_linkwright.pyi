@@ -459,18 +459,32 @@ def analyze(
     which: str | None,
     crank_deg: list[float] | None,
     cycle: int,
-    omega: float,
+    omega: float | None,
     alpha: float,
     methods: list[str],
     all_configurations: bool,
     loads: Any = None,
 ) -> list[str]: ...
+def balance(
+    subject: Any,
+    which: str | None,
+    means: str,
+    names: list[str],
+    over_deg: list[float] | None,
+    rates: list[float],
+    least_free_length: float,
+    radius: float | None,
+    even: str,
+    omega: float | None,
+    loads: Any = None,
+) -> tuple[list[str], dict[str, Any]]: ...
 def build(
     subject: Any,
     which: str | None = None,
     hole: float | None = None,
     margin: float | None = None,
     tolerance: float | None = None,
+    shop: Any = None,
 ) -> tuple[dict[str, Any], str]: ...
 def snap(
     subject: Any,
@@ -484,7 +498,7 @@ def snap(
     threads: int | None = None,
 ) -> tuple[Run, str]: ...
 def export(
-    subject: Any, which: str | None, format: str, settings: list[tuple[str, str]]
+    subject: Any, which: str | None, format: str, settings: list[tuple[str, str]], shop: Any = None
 ) -> tuple[bytes, list[str]]: ...
 def export_formats() -> list[str]: ...
 def suite(

@@ -1,35 +1,34 @@
 //! The figures of what it takes to build a linkage, as data.
 
+use linkwright::internals::app::building::{self, Sizes};
 use linkwright::internals::app::inputs::Given;
-use linkwright::internals::judge::practicality::clearance::Build;
 use linkwright::internals::judge::practicality::sensitivity::Dimension;
 use linkwright::internals::judge::practicality::{Closest, Practicality, Sweep, usual_tolerance};
+use linkwright::internals::mechanism::CrankLinkage;
+use linkwright::internals::mechanism::plates::Shop;
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::practicality::practicality_text;
 use linkwright::{Problem, Unit};
 use serde_json::{Value, json};
 
-/// Examines a linkage; sizes that are not given are the usual ones.
+/// Examines a linkage; sizes that are not given are those of the shop data, else the usual ones.
 ///
 /// # Errors
 /// The reason why there is nothing to build.
 pub fn built(
     given: Given,
-    hole: Option<f64>,
-    margin: Option<f64>,
+    shop: Option<Shop>,
+    sizes: &Sizes,
     tolerance: Option<f64>,
 ) -> Result<(Value, String), String> {
-    let made = |title: &str, sweep: Option<Sweep>, unit: Option<Unit>| {
+    let made = |title: &str, sweep: Option<Sweep>, linkage: &CrankLinkage, unit: Option<Unit>| {
         let sweep = sweep.ok_or_else(|| nothing(title))?;
-        let no_room =
-            || format!("{title}: the slot of its block leaves no room for a hole, so there are no plates");
-        let hole = hole.or_else(|| Build::usual_hole_of(&sweep, unit)).ok_or_else(no_room)?;
-        Ok::<Build, String>(Build::new(hole, margin.unwrap_or(hole)))
+        building::build((linkage, unit), &sweep, shop, sizes).map_err(|why| format!("{title}: {why}"))
     };
     let (title, linkage, unit, found) = match given {
         Given::Linkage(file) => {
             let linkage = file.linkage;
-            let build = made(&file.name, Sweep::of_linkage(linkage), file.unit)?;
+            let build = made(&file.name, Sweep::of_linkage(linkage), &linkage, file.unit)?;
             let found = Practicality::of_linkage(linkage, build);
             (file.name.clone(), linkage, file.unit, found)
         }
@@ -38,7 +37,7 @@ pub fn built(
             let problem = Problem::new(run.record.problem.resolved.clone()).map_err(|e| e.to_string())?;
             let unit = run.record.problem.unit;
             let linkage = chosen.candidate.linkage;
-            let build = made(&chosen.label, Sweep::of_candidate(&problem, chosen.candidate), unit)?;
+            let build = made(&chosen.label, Sweep::of_candidate(&problem, chosen.candidate), &linkage, unit)?;
             let found = Practicality::of_candidate(&problem, chosen.candidate, build);
             (chosen.label.clone(), linkage, unit, found)
         }

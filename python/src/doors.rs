@@ -8,6 +8,8 @@ use crate::run::Run;
 use crate::slider::SliderLinkage;
 use crate::waiting::{Ended, carrying, run, run_whole};
 use crate::{pools, values};
+use linkwright::internals::app::balancing::{Asked, Means, NotBalanced, Subject as Balancing};
+use linkwright::internals::app::building::Sizes;
 use linkwright::internals::app::comparison::{self, NotCompared, Target};
 use linkwright::internals::app::inputs::{self, Given};
 use linkwright::internals::app::snapping::{
@@ -17,14 +19,15 @@ use linkwright::internals::app::suite::choice::{chosen, collection};
 use linkwright::internals::app::suite::{Options as SuiteOptions, Step, suite as run_suite};
 use linkwright::internals::files::linkage_file::{self, AnyLinkageFile, LinkageFile};
 use linkwright::internals::files::schema::{SchemaKind, schema as schema_of};
-use linkwright::internals::files::{loads_file, name};
+use linkwright::internals::files::{loads_file, name, shop_file};
 use linkwright::internals::mechanism::analysis::driven::{MechanismRequest, analyze_mechanism};
 use linkwright::internals::mechanism::analysis::{
     PositionMethod, Request as Analysis, analyze as analyze_four_bar, full_turn,
 };
-use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
-use linkwright::internals::mechanism::loads::Loads;
-use linkwright::internals::mechanism::{CrankLinkage, Linkage};
+use linkwright::internals::mechanism::loads::balance::MassAim;
+use linkwright::internals::mechanism::loads::{Drive, LoadFault, Loads};
+use linkwright::internals::mechanism::plates::Shop;
+use linkwright::internals::mechanism::{CrankLinkage, Linkage, Unit};
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::analysis_csv::analysis_csv;
 use linkwright::internals::report::analysis_sheets::analysis_svg;
@@ -105,12 +108,45 @@ fn loads_of(
     let unit = file
         .unit
         .ok_or_else(|| refused("loads: the linkage has no unit of length; give unit=\"mm\" with it"))?;
+    let text = file_text("loads", given, Some(unit))?;
+    loads_file::parse("loads", &text, file).map(Some).map_err(refused)
+}
+
+/// Returns the one linkage of an input, with its unit.
+fn one_linkage(given: &Given) -> PyResult<(CrankLinkage, Option<Unit>)> {
+    Ok(match given {
+        Given::Linkage(file) => (file.linkage, file.unit),
+        Given::Run(run) => (run.one().map_err(refused)?.candidate.linkage, run.record.problem.unit),
+    })
+}
+
+/// Returns the shop data of a linkage: a dict with the keys of `[shop]`, or a path; of a linkage file without either its own.
+fn shop_of(
+    subject: &Bound<'_, PyAny>,
+    shop: Option<&Bound<'_, PyAny>>,
+    linkage: &CrankLinkage,
+    unit: Option<Unit>,
+) -> PyResult<Option<Shop>> {
+    let Some(given) = shop else {
+        let Ok(path) = subject.extract::<PathBuf>() else { return Ok(None) };
+        return inputs::read_shop(&path).map_err(refused);
+    };
+    if let Ok(path) = given.extract::<PathBuf>() {
+        return shop_file::load(&path, linkage).map(Some).map_err(refused);
+    }
+    let text = file_text("shop", given, unit)?;
+    shop_file::parse("shop", &text, Some(linkage)).map(Some).map_err(refused)
+}
+
+/// Returns a dict as the text of a file with one table.
+fn file_text(table: &str, given: &Bound<'_, PyAny>, unit: Option<Unit>) -> PyResult<String> {
     let mut whole = toml::Table::new();
     whole.insert("format".into(), 1.into());
-    whole.insert("unit".into(), unit.label().into());
-    whole.insert("loads".into(), toml::Value::Table(values::table(given)?));
-    let text = toml::to_string(&whole).map_err(refused)?;
-    loads_file::parse("loads", &text, file).map(Some).map_err(refused)
+    if let Some(unit) = unit {
+        whole.insert("unit".into(), unit.label().into());
+    }
+    whole.insert(table.into(), toml::Value::Table(values::table(given)?));
+    toml::to_string(&whole).map_err(refused)
 }
 
 fn unfit(subject: &Bound<'_, PyAny>) -> PyErr {
@@ -217,7 +253,7 @@ pub fn analyze<'py>(
     which: Option<&str>,
     crank_deg: Option<Vec<f64>>,
     cycle: usize,
-    omega: f64,
+    omega: Option<f64>,
     alpha: f64,
     methods: Vec<String>,
     all_configurations: bool,
@@ -231,7 +267,8 @@ pub fn analyze<'py>(
             return Err(refused(format!("cycle = {cycle}: 1 to 100000 are possible")));
         }
         let crank_deg = crank_deg.unwrap_or_else(|| full_turn(cycle));
-        let input = CrankMotion { speed_rad_s: omega, acceleration_rad_s2: alpha };
+        let told = |fault: LoadFault| refused(format!("{fault}; {}", fault.remedy()));
+        let input = Drive::chosen(omega, alpha, loads.as_ref()).map_err(told)?;
         let methods: Result<Vec<PositionMethod>, _> = methods.iter().map(|m| m.parse()).collect();
         let methods = methods.map_err(refused)?;
         match linkage {
@@ -278,9 +315,60 @@ pub fn analyze<'py>(
     })
 }
 
+/// Balances a loaded linkage by a spring, a torsion spring or counter-masses: JSON, text, and the balanced loads as a file.
+#[pyfunction]
+#[pyo3(signature = (subject, which, means, names, over_deg, rates, least_free_length, radius, even, omega, loads = None))]
+#[expect(clippy::too_many_arguments, reason = "the options of the command")]
+pub fn balance<'py>(
+    py: Python<'py>,
+    subject: &Bound<'py, PyAny>,
+    which: Option<&str>,
+    means: &str,
+    names: Vec<String>,
+    over_deg: Option<[f64; 2]>,
+    rates: Vec<f64>,
+    least_free_length: f64,
+    radius: Option<f64>,
+    even: &str,
+    omega: Option<f64>,
+    loads: Option<&Bound<'py, PyAny>>,
+) -> PyResult<([String; 2], Bound<'py, PyAny>)> {
+    guarded(|| {
+        let told = |why: NotBalanced| match why.option() {
+            Some(option) => refused(format!("{option}: {why}")),
+            None => refused(why),
+        };
+        let file = any_linkage(subject, which)?;
+        let loads = loads_of(subject, loads, &file)?;
+        let means = match (means, names.as_slice()) {
+            ("spring", [from, to]) => Means::Spring([from.clone(), to.clone()]),
+            ("torsion", [body]) => Means::Torsion([body.clone(), "ground".to_owned()]),
+            ("torsion", [body, against]) => Means::Torsion([body.clone(), against.clone()]),
+            ("masses", _) => Means::Masses(names),
+            (means, _) => {
+                return Err(refused(format!("{means}: give two ends of a spring, or one or two bodies")));
+            }
+        };
+        let aim = match even {
+            "torque" => MassAim::Torque,
+            "shaking-force" => MassAim::ShakingForce,
+            "both" => MassAim::Both,
+            _ => return Err(refused(format!("even = {even:?}: choose from torque, shaking-force, both"))),
+        };
+        let asked = Asked { means, over_deg, rates, least_free_length, radius, aim, speed_rad_s: omega };
+        let subject = Balancing::new(file, loads).map_err(told)?;
+        let (found, subject) = run_whole(py, move |_| (subject.balance(&asked), subject))?;
+        let found = found.map_err(told)?;
+        let texts = [found.json().map_err(refused)?, subject.text(&found, Colour::Never)];
+        let file: toml::Table = toml::from_str(&subject.loads_file(&found)).map_err(refused)?;
+        let loads = serde_json::to_value(file.get("loads")).map_err(refused)?;
+        Ok((texts, values::to_python(py, &loads)?))
+    })
+}
+
 /// Returns what it takes to build a linkage: figures and text.
 #[pyfunction]
-#[pyo3(signature = (subject, which = None, hole = None, margin = None, tolerance = None))]
+#[pyo3(signature = (subject, which = None, hole = None, margin = None, tolerance = None, shop = None))]
 pub fn build<'py>(
     py: Python<'py>,
     subject: &Bound<'py, PyAny>,
@@ -288,6 +376,7 @@ pub fn build<'py>(
     hole: Option<f64>,
     margin: Option<f64>,
     tolerance: Option<f64>,
+    shop: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(Bound<'py, PyAny>, String)> {
     guarded(|| {
         for (key, size) in [("hole", hole), ("margin", margin), ("tolerance", tolerance)] {
@@ -296,7 +385,10 @@ pub fn build<'py>(
             }
         }
         let given = given(subject, which)?;
-        let found = run_whole(py, move |_| crate::building::built(given, hole, margin, tolerance))?;
+        let linkage = one_linkage(&given)?;
+        let shop = shop_of(subject, shop, &linkage.0, linkage.1)?;
+        let sizes = Sizes { hole, margin, ..Sizes::default() };
+        let found = run_whole(py, move |_| crate::building::built(given, shop, &sizes, tolerance))?;
         let (figures, text) = found.map_err(refused)?;
         Ok((values::to_python(py, &figures)?, text))
     })
@@ -367,12 +459,14 @@ pub fn snap<'py>(
 
 /// Writes a linkage in a format: the bytes, and the assumptions that were made.
 #[pyfunction]
+#[pyo3(signature = (subject, which, format, settings, shop = None))]
 pub fn export<'py>(
     py: Python<'py>,
     subject: &Bound<'py, PyAny>,
     which: Option<&str>,
     format: &str,
     settings: Vec<(String, String)>,
+    shop: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(Bound<'py, PyBytes>, Vec<String>)> {
     guarded(|| {
         let format: ExportFormat = format.parse().map_err(refused)?;
@@ -381,10 +475,18 @@ pub fn export<'py>(
             refused(format!("{place}{}\nhelp: {}", refusal.message, refusal.help))
         };
         let settings = ExportSettings::parse(format, &settings).map_err(helped)?;
-        let subject = match given(subject, which)? {
-            Given::Linkage(file) => ExportSubject::of_linkage(&file),
+        if shop.is_some() && !format.settings().contains(&"hole_mm") {
+            let name = format.name();
+            return Err(refused(format!("shop means nothing for {name}, which has no holes: leave it out")));
+        }
+        let given = given(subject, which)?;
+        let linkage = one_linkage(&given)?;
+        let shop = shop_of(subject, shop, &linkage.0, linkage.1)?;
+        let subject = match given {
+            Given::Linkage(file) => ExportSubject { shop, ..ExportSubject::of_linkage(&file) },
             Given::Run(run) => {
-                ExportSubject::of_candidate(&run.record, run.one().map_err(refused)?.candidate)
+                let candidate = run.one().map_err(refused)?.candidate;
+                ExportSubject::of_candidate_for_shop(&run.record, candidate, shop)
             }
         };
         let made = run_whole(py, move |_| write_export(&subject, format, &settings))?.map_err(helped)?;

@@ -67,6 +67,7 @@ fn _linkwright(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(proving::certify, module)?)?;
     module.add_function(wrap_pyfunction!(doors::compare, module)?)?;
     module.add_function(wrap_pyfunction!(doors::analyze, module)?)?;
+    module.add_function(wrap_pyfunction!(doors::balance, module)?)?;
     module.add_function(wrap_pyfunction!(doors::build, module)?)?;
     module.add_function(wrap_pyfunction!(doors::snap, module)?)?;
     module.add_function(wrap_pyfunction!(doors::export, module)?)?;

@@ -30,7 +30,7 @@ def documented() -> list[tuple[str, str]]:
 
 #: Attributes whose meaning stands in a comment of the class.
 SLOTS = {"data", "result", "which", "text", "csv", "svg", "html", "markdown", "mismatches", "held_to_limits"} | {
-    "leaves", "not_checked", "folder", "rows", "accepted", "bugs", "shards", "before",
+    "leaves", "not_checked", "folder", "rows", "accepted", "bugs", "shards", "before", "loads",
 }  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -308,3 +309,78 @@ def test_loads_give_torque_and_joint_forces(tmp_path: Path, program: list[str]) 
         lw.analyze(four_bar, loads={"body": {"crnk": {"mass_kg": 1.0}}})
     with pytest.raises(lw.ProblemError, match="unit"):
         lw.analyze(lw.FourBar((0, 0), (4, 1), 2, 5, 5, 5, 5), loads={"gravity": [0, -9.81]})
+
+
+def test_a_speed_over_the_crank_angle_comes_with_the_loads() -> None:
+    four_bar = lw.FourBar((0, 0), (80, 20), 30, 90, 80, 60, 60, unit="mm")
+    table = [[0, 60], [120, 90], [240, 70]]
+    loads = {"speed_rpm": table, "body": {"crank": {"mass_kg": 0.0, "inertia_kg_m2": 2e-3}}}
+    found = lw.analyze(four_bar, angle_deg=[0.0, 60.0, 120.0], loads=loads)
+    rows = [row["loads"] for row in found.data["configurations"][0]["rows"]]
+    assert [rows[0]["omega2_rad_s"], rows[2]["omega2_rad_s"]] == pytest.approx([2 * math.pi, 3 * math.pi])
+    for row in rows:
+        assert row["torque_N_m"] == pytest.approx(2e-3 * row["alpha2_rad_s2"], rel=1e-12)
+    # Near the harmonic mean of the rows.
+    assert found.data["loads"]["speed_over_turn"]["turn_s"] == pytest.approx(20 / 60 + 20 / 90 + 20 / 70, rel=5e-3)
+    steady = lw.analyze(four_bar, angle_deg=[60.0], omega=3.0, loads=loads).data
+    assert steady["omega2_rad_s"] == 3.0 and "speed_over_turn" not in steady["loads"]
+    with pytest.raises(lw.ProblemError, match="follows from it"):
+        lw.analyze(four_bar, alpha=1.0, loads=loads)
+    with pytest.raises(lw.ProblemError, match="nowhere 0"):
+        lw.analyze(four_bar, loads={"speed_rpm": [[0, 60], [180, 0]]})
+
+
+def test_a_balance_is_that_of_the_command(tmp_path: Path, program: list[str]) -> None:
+    lamp = lw.FourBar((0, 0), (500, 0), 300, 520, 400, 100, 450, unit="mm")
+    arm = {"gravity": [0, -9.81], "body": {"crank": {"mass_kg": 1.0, "center": [300, 0]}}}
+    held = lw.balance(lamp, spring=(("crank", (150, 0)), (0, 120)), over_deg=(20, 70), loads=arm)
+    # k a b = m g r.
+    assert held.data["spring"]["extension"]["rate_N_per_m"] == pytest.approx(163.5, rel=1e-9)
+    assert "a spring that lets it stay" in held.text
+    left = lw.analyze(lamp, angle_deg=[30.0, 60.0], loads=held.loads).data["configurations"][0]["rows"]
+    assert [row["loads"]["torque_N_m"] for row in left] == pytest.approx([0.0, 0.0], abs=1e-9)
+
+    # From a file with its loads, as the command prints it.
+    keys = "[loads]\ngravity = [0, -9.81]\nspeed_rpm = 30\n[loads.body.crank]\nmass_kg = 1.0\ncenter = [300, 0]\n"
+    (tmp_path / "lamp.toml").write_text(lamp.to_toml() + keys)
+    for options, asked in [
+        (["--spring", "crank:150,0", "0,120", "--over", "20,70"], {"spring": ("crank:150,0", "0,120"), "over_deg": (20, 70)}),
+        (["--torsion", "crank", "--over", "20,70"], {"torsion": "crank", "over_deg": (20, 70)}),
+    ]:
+        said = call([*program, "balance", str(tmp_path / "lamp.toml"), *options, "--json"])
+        assert json.loads(said.stdout) == lw.balance(tmp_path / "lamp.toml", **asked).data
+    loaded = lw.FourBar((0, 0), (400, 0), 100, 350, 300, 200, 220, unit="mm")
+    weight = {"gravity": [0, -9.81], "body": {"crank": {"mass_kg": 2.0, "center": [80, 0]}}}
+    even = lw.balance(loaded, masses="crank", radius=50, loads=weight)
+    assert even.data["ripple_percent"] < 1e-6
+    assert even.data["masses"][0]["mass_kg"] * even.data["masses"][0]["distance_m"] == pytest.approx(0.16, rel=1e-6)
+    for wrong, words in [
+        ({}, "one of spring="),
+        ({"spring": ("Q", (0, 1))}, "joints and points of this linkage"),
+        ({"masses": "crank"}, "radius"),
+        ({"masses": "crank", "radius": 5, "even": "noise"}, "shaking-force"),
+        ({"spring": ("C", (0, 120)), "over_deg": (30, 30)}, "wider than 0"),
+    ]:
+        with pytest.raises(lw.ProblemError, match=words):
+            lw.balance(lamp, loads=arm, **wrong)
+    with pytest.raises(lw.ProblemError, match="no loads to balance"):
+        lw.balance(lamp, spring=("C", (0, 120)))
+
+
+def test_shop_data_are_those_of_the_command(tmp_path: Path, program: list[str]) -> None:
+    four_bar = lw.FourBar((0, 0), (80, 20), 30, 90, 80, 60, 60, unit="mm")
+    shop = {"hole": 4, "margin": 5, "joint": {"B": {"hole_in": {"follower": 10}}}}
+    keys = "[shop]\nhole = 4\nmargin = 5\n[shop.joint.B]\nhole_in = { follower = 10 }\n"
+    (tmp_path / "four-bar.toml").write_text(four_bar.to_toml() + keys)
+    (tmp_path / "shop.toml").write_text('format = 1\nunit = "mm"\n' + keys)
+    own = lw.build(tmp_path / "four-bar.toml")
+    assert own.data["hole"] == 4 and own.data["margin"] == 5
+    assert lw.build(four_bar, shop=shop).data == own.data == lw.build(four_bar, shop=tmp_path / "shop.toml").data
+    assert lw.build(four_bar, shop=shop, hole=3).data["hole"] == 3
+    said = call([*program, "export", str(tmp_path / "four-bar.toml"), "--format", "cut-list"])
+    assert lw.export(tmp_path / "four-bar.toml", "cut-list").decode() == said.stdout
+    assert lw.export(four_bar, "cut-list", shop=shop) != lw.export(four_bar, "cut-list")
+    with pytest.raises(lw.ProblemError, match="hole_in"):
+        lw.build(four_bar, shop={"joint": {"B": {"hole_of": 3}}})
+    with pytest.raises(lw.ProblemError, match="no holes"):
+        lw.export(four_bar, "csv", shop=shop)

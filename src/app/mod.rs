@@ -2,6 +2,8 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | [`balancing`] | balances as they are asked for: a spring or counter-masses, with the text and the file of the result |
+//! | [`building`] | sizes for building: shop data, sizes that go before them, and the usual ones |
 //! | [`certificates`] | certificates and the files beside their record: checkpoints and leaves |
 //! | [`cli`] | the command line: arguments, commands, exit codes |
 //! | [`comparison`] | measuring the inputs of a comparison: every figure is computed again, and none is taken from a record unchecked |
@@ -12,6 +14,8 @@
 //! | [`suite`] | the suite: benchmark problems whose answer is known, each run from many seeds, and compared with the population searches at equal evaluations and with published answers |
 //! | [`sweep`] | sweeps: a plan of many problems, its shards of jobs, and their merged rows |
 
+pub mod balancing;
+pub mod building;
 pub mod certificates;
 #[cfg(feature = "cli")]
 pub mod cli;

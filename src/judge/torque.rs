@@ -26,6 +26,6 @@ pub(super) fn peak_torque(
         let (low, high) = crank_angles.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
         Some([low, high])
     };
-    let peak = loaded.torque_peak_over(stretch, loads.crank_motion())?;
+    let peak = loaded.torque_peak_over(stretch, loaded.drive())?;
     Some(peak.value.abs()).filter(|peak| peak.is_finite())
 }

@@ -11,7 +11,9 @@ use crate::mechanism::Unit;
 use crate::mechanism::analysis::{
     Analysis, ConditionRecord, Configuration, MethodRow, MobilityRecord, Pose, Rates, Row, Status,
 };
+use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::mechanism::four_bar::transmission::ForceTransmission;
+use crate::mechanism::loads::Drive;
 use crate::mechanism::{FourBar, LinkageType};
 
 /// The number of significant digits of lengths and rates.
@@ -25,7 +27,7 @@ pub fn analysis_head(analysis: &Analysis, colour: Colour) -> String {
         out.push_str(&mobility_words(&analysis.mobility, analysis.unit));
     }
     if let Some(record) = &analysis.loads {
-        out.push_str(&format!("\n{}", loads::words(record, analysis.omega2_rad_s)));
+        out.push_str(&format!("\n{}", loads::words(record, analysis.drive.mean())));
     }
     out
 }
@@ -62,7 +64,7 @@ pub fn analysis_table(analysis: &Analysis, colour: Colour) -> String {
             "Crank {}. Angles in degrees from the x axis, \
              counter-clockwise; lengths in {unit}. status: ok; singular: a toggle, velocities are not decided by \
              the crank; open: the loop does not close; undetermined: C lies on B.",
-            input(analysis.omega2_rad_s, analysis.alpha2_rad_s2),
+            input(&analysis.drive),
         ),
         COLUMNS,
     ));
@@ -153,9 +155,19 @@ pub(super) fn reach(arcs_deg: &[[f64; 2]]) -> String {
 }
 
 /// Returns the input's motion: `speed 1.000000 rad/s, acceleration 0 rad/s2`.
-pub(super) fn input(omega2_rad_s: f64, alpha2_rad_s2: f64) -> String {
-    let [speed, acceleration] = [omega2_rad_s, alpha2_rad_s2].map(|rate| significant(rate, DIGITS));
-    format!("speed {speed} rad/s, acceleration {acceleration} rad/s2")
+pub(super) fn input(drive: &Drive) -> String {
+    let n = |rate: f64| significant(rate, DIGITS);
+    match (drive.range(), drive.mean()) {
+        (Some(range), mean) => format!(
+            "speed {} to {} rad/s over the turn, {} rad/s on average over time",
+            n(range.slowest_rad_s),
+            n(range.fastest_rad_s),
+            n(mean.speed_rad_s)
+        ),
+        (None, CrankMotion { speed_rad_s, acceleration_rad_s2 }) => {
+            format!("speed {} rad/s, acceleration {} rad/s2", n(speed_rad_s), n(acceleration_rad_s2))
+        }
+    }
 }
 
 /// Returns a number shown beside others of the given size; a number that is only rounding in comparison is shown as 0.

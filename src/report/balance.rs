@@ -5,7 +5,8 @@ use super::grid::{Colour, Grid, Ink, plain};
 use super::text::{COLUMNS, brief, clean, significant, wrapped};
 use crate::mechanism::Unit;
 use crate::mechanism::loads::balance::{MassBalance, SpringBalance, TorqueOver};
-use crate::mechanism::loads::{Place, Spring};
+use crate::mechanism::loads::{Drive, Place, Spring};
+use std::f64::consts::TAU;
 
 /// Significant digits of what is to be bought and of what is left.
 const FIGURES: usize = 4;
@@ -105,8 +106,13 @@ fn place(unit: Unit, place: &Place) -> String {
 }
 
 /// Returns the page of a balance by counter-masses.
-pub fn masses_text(name: &str, unit: Unit, rpm: f64, found: &MassBalance, colour: Colour) -> String {
-    let title = format!("{}: counter-masses, at {} rpm", clean(name), brief(rpm, 5));
+pub fn masses_text(name: &str, unit: Unit, drive: &Drive, found: &MassBalance, colour: Colour) -> String {
+    let rpm = |speed_rad_s: f64| brief(speed_rad_s * 60.0 / TAU, 5);
+    let at = match drive.range() {
+        Some(range) => format!("{} to {}", rpm(range.slowest_rad_s), rpm(range.fastest_rad_s)),
+        None => rpm(drive.mean().speed_rad_s),
+    };
+    let title = format!("{}: counter-masses, at {at} rpm", clean(name));
     let mut out = colour.paint(Ink::Strong, &title);
     out.push('\n');
     let mut grid = Grid::new(&[(Right, &["body", "mass", "from its pivot", "direction from its line"])]);

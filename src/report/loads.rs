@@ -8,9 +8,11 @@ use super::grid::{Colour, Grid, plain};
 use super::sheet::{FULL, HEAD, INSET, Sheet};
 use super::text::{COLUMNS, clean, exact, plural, significant, wrapped};
 use crate::mechanism::analysis::loaded::{LoadRecord, PairName};
+use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::mechanism::loads::figures::{Fluctuation, JointPeak};
 use crate::mechanism::loads::{Instant, JointForce, LoadFigures, Peak};
 use crate::mechanism::structure::OutputBody;
+use std::f64::consts::TAU;
 
 /// Digits of figures in sentences.
 const FIGURES: usize = 4;
@@ -42,9 +44,20 @@ fn column_name(record: &LoadRecord, index: usize) -> String {
     }
 }
 
-/// Returns the columns that loads add to a CSV: `torque_N_m`, two of each pair, shaking force and moment, energies.
+/// The names of the columns of the crank's motion, of a speed that changes over the turn.
+const INPUT: [&str; 2] = ["omega2_rad_s", "alpha2_rad_s2"];
+
+/// Returns the names of the columns of the crank's motion; none of a constant speed.
+fn inputs(record: &LoadRecord) -> impl Iterator<Item = &'static str> {
+    let changes = record.figures.as_ref().is_some_and(|figures| figures.speed_over_turn.is_some());
+    INPUT.into_iter().filter(move |_| changes)
+}
+
+/// Returns the columns that loads add to a CSV: speed and acceleration of a crank with a table of speeds, `torque_N_m`, two of each
+/// pair, shaking force and moment, energies.
 pub(super) fn columns(record: &LoadRecord) -> Vec<String> {
-    let mut columns = vec!["torque_N_m".to_owned()];
+    let mut columns: Vec<String> = inputs(record).map(str::to_owned).collect();
+    columns.push("torque_N_m".to_owned());
     for (i, pair) in record.pairs.iter().enumerate() {
         let name = column_name(record, i);
         columns.extend(match pair.slides {
@@ -58,7 +71,7 @@ pub(super) fn columns(record: &LoadRecord) -> Vec<String> {
 
 /// Returns the cells of a row in these columns, empty without a result.
 pub(super) fn cells(record: &LoadRecord, instant: Option<&Instant>) -> Vec<String> {
-    let Some(at) = instant else { return vec![String::new(); 1 + 2 * record.pairs.len() + LAST.len()] };
+    let Some(at) = instant else { return vec![String::new(); columns(record).len()] };
     let two = |force: &JointForce| {
         let slider = [force.normal.unwrap_or_default(), force.moment.unwrap_or_default()];
         force.force.unwrap_or(slider)
@@ -66,7 +79,8 @@ pub(super) fn cells(record: &LoadRecord, instant: Option<&Instant>) -> Vec<Strin
     let [x, y] = at.shaking_force;
     let forces = at.forces.iter().flat_map(two);
     let last = [x, y, at.shaking_moment, at.kinetic, at.potential];
-    std::iter::once(at.torque).chain(forces).chain(last).map(exact).collect()
+    let input = at.input.iter().flat_map(|input| [input.speed_rad_s, input.acceleration_rad_s2]);
+    input.chain([at.torque]).chain(forces).chain(last).map(exact).collect()
 }
 
 /// Returns the comment above the header of a CSV: the body on which each force acts.
@@ -89,7 +103,7 @@ fn at(peak: &Peak, unit: &str) -> String {
 }
 
 /// Returns the figures over the range of the crank in sentences, wrapped.
-pub fn words(record: &LoadRecord, omega2_rad_s: f64) -> String {
+pub fn words(record: &LoadRecord, mean: CrankMotion) -> String {
     let Some(figures) = &record.figures else {
         return wrapped("  ", "  ", "Loads: the linkage closes at no crank angle.", COLUMNS);
     };
@@ -110,11 +124,21 @@ pub fn words(record: &LoadRecord, omega2_rad_s: f64) -> String {
         n(figures.torque_rms),
         n(rounded(figures.torque_mean, figures.torque_rms)),
     );
-    text.push_str(&match omega2_rad_s {
+    text.push_str(&match mean.speed_rad_s {
         0.0 => "; the crank stands still (statics: --rpm adds the masses' inertia).".to_owned(),
-        speed => format!("; mean power {} W.", n(rounded(figures.torque_mean, figures.torque_rms) * speed)),
+        _ if rounded(figures.torque_mean, figures.torque_rms) == 0.0 => "; mean power 0 W.".to_owned(),
+        _ => format!("; mean power {} W.", n(figures.power_mean)),
     });
-    if let Some(fluctuation) = figures.fluctuation.as_ref().filter(|_| omega2_rad_s != 0.0) {
+    if let Some(range) = &figures.speed_over_turn {
+        let [slowest, fastest, average] =
+            [range.slowest_rad_s, range.fastest_rad_s, range.mean_rad_s].map(|speed| n(speed * 60.0 / TAU));
+        text.push_str(&format!(
+            " The crank turns at {slowest} to {fastest} rpm, at {average} rpm on average over time: a turn takes {} s. Rms and power are \
+             over time; the speed is given, so that a flywheel is not computed.",
+            n(range.turn_s)
+        ));
+    }
+    if let Some(fluctuation) = figures.fluctuation.as_ref().filter(|_| mean.speed_rad_s != 0.0) {
         text.push_str(&swing(fluctuation));
     }
     text.push_str(&largest(&figures.joints));

@@ -44,7 +44,7 @@ pub fn mechanism_head(analysis: &MechanismAnalysis, colour: Colour) -> String {
 
 /// Returns the figures of loads after a line feed; nothing without loads.
 fn loads_words(analysis: &MechanismAnalysis) -> String {
-    let words = |record| format!("\n{}", loads::words(record, analysis.omega2_rad_s));
+    let words = |record| format!("\n{}", loads::words(record, analysis.drive.mean()));
     analysis.loads.as_ref().map_or_else(String::new, words)
 }
 
@@ -137,7 +137,7 @@ pub fn mechanism_table(analysis: &MechanismAnalysis, colour: Colour) -> String {
     let note = format!(
         "Motion of {}; crank {}. Every point stands in the CSV and JSON.",
         clean(&analysis.trace),
-        input(analysis.omega2_rad_s, analysis.alpha2_rad_s2)
+        input(&analysis.drive)
     );
     let of_loads = analysis.loads.as_ref().map_or_else(String::new, |record| {
         let rows: Vec<_> = analysis.rows.iter().map(|row| (row.crank_deg, row.loads.as_deref())).collect();

@@ -1,9 +1,8 @@
 //! Loads of a problem: the same for every candidate, by the names that the bodies and joints of its kind have.
 
 use super::similarity::Similarity;
-use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::mechanism::loads::{
-    Couple, Force, ForceVector, LoadError, LoadedLinkage, Loads, Mass, Place, Quantity, Spring,
+    Couple, CrankSpeed, Force, ForceVector, LoadError, LoadedLinkage, Loads, Mass, Place, Quantity, Spring,
 };
 use crate::mechanism::{CrankLinkage, Linkage};
 use schemars::JsonSchema;
@@ -32,11 +31,6 @@ impl LoadsSpec {
         LoadedLinkage::scaled(&Linkage::from(*linkage), self.metres, &self.applied)
     }
 
-    /// Returns the motion of the crank at which torques are judged: steady, at the speed of the loads (0: statics).
-    pub fn crank_motion(&self) -> CrankMotion {
-        CrankMotion::steady(self.applied.speed_rad_s.unwrap_or(0.0))
-    }
-
     /// Returns the loads of the problem's image under a similarity: its lengths in metres, masses and torques are the same, a
     /// mirror image turns the sense of rotation.
     #[must_use]
@@ -51,7 +45,7 @@ impl LoadsSpec {
         }
         let applied = Loads {
             gravity: by.turned(*gravity),
-            speed_rad_s: image.speed(*speed_rad_s, forces),
+            speed_rad_s: image.speed(speed_rad_s.as_ref(), forces),
             bodies,
             forces: forces.iter().map(|force| image.force(force)).collect(),
             couples: couples.iter().map(|couple| image.couple(couple)).collect(),
@@ -86,12 +80,12 @@ impl Image<'_> {
 
     /// Returns the image of the speed. Forces that oppose a velocity take a crank that stands still for one that turns
     /// counter-clockwise; its mirror image turns clockwise, at a speed whose square is 0.
-    fn speed(&self, speed: Option<f64>, forces: &[Force]) -> Option<f64> {
+    fn speed(&self, speed: Option<&CrankSpeed>, forces: &[Force]) -> Option<CrankSpeed> {
         let has_sense = forces.iter().any(|force| matches!(force.vector, ForceVector::Opposing(_)));
-        match speed.filter(|speed| *speed != 0.0) {
-            None if self.by.mirrors && has_sense => Some(-f64::MIN_POSITIVE),
-            None => speed,
-            Some(speed) => Some(self.sense(speed)),
+        match speed.filter(|speed| **speed != CrankSpeed::Steady(0.0)) {
+            None if self.by.mirrors && has_sense => Some(CrankSpeed::Steady(-f64::MIN_POSITIVE)),
+            None => speed.cloned(),
+            Some(speed) => Some(speed.turned(self.by.degrees(0.0).to_radians(), self.by.mirrors)),
         }
     }
 

@@ -106,7 +106,7 @@ pub fn linkage(bytes: &[u8]) {
         Err(refusal) => return shown(&refusal),
     };
     let crank_deg = full_turn(5);
-    let input = CrankMotion { speed_rad_s: 2.0, acceleration_rad_s2: 1.0 };
+    let input = CrankMotion { speed_rad_s: 2.0, acceleration_rad_s2: 1.0 }.into();
     match linkage {
         Linkage::FourBar(linkage) => {
             let again = linkage_file::parse("again.toml", &linkage_file::to_toml(&name, unit, &linkage));

@@ -1,7 +1,7 @@
 //! Loads of a problem in other places, sizes and senses, and as they are recorded.
 
 use linkwright::internals::mechanism::loads::{
-    BodyMass, Couple, Force, ForceVector, Loads, Mass, Place, Quantity, Spring,
+    BodyMass, Couple, CrankSpeed, Force, ForceVector, Loads, Mass, Place, Quantity, Spring,
 };
 use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar};
 use linkwright::internals::task::loads::LoadsSpec;
@@ -14,7 +14,7 @@ fn loads() -> Loads {
     let row = |angle: f64, x: f64| (angle, [x]);
     Loads {
         gravity: [0.5, -9.81],
-        speed_rad_s: Some(7.0),
+        speed_rad_s: Some(CrankSpeed::Steady(7.0)),
         bodies: vec![
             mass("crank", Mass::Given { mass_kg: 0.3, center: [0.02, 0.01], inertia_kg_m2: 1e-4 }),
             mass("coupler", Mass::AtJoint { mass_kg: 1.0, joint: "P".into(), inertia_kg_m2: 2e-4 }),
@@ -54,11 +54,17 @@ fn loads() -> Loads {
 
 #[test]
 fn the_torque_of_an_image_is_that_of_the_linkage_with_the_sense_of_its_image() {
+    images_have_its_torque(loads());
+    let table = CrankSpeed::Table(vec![(0.4, -7.0), (1.9, -9.0), (3.0, -6.5)]);
+    images_have_its_torque(Loads { speed_rad_s: Some(table), ..loads() });
+}
+
+fn images_have_its_torque(applied: Loads) {
     let four_bar = |a: [f64; 2], b: [f64; 2], y: f64, assembly| {
         let pivots = [Complex::new(a[0], a[1]), Complex::new(b[0], b[1])];
         FourBar::with_coupler_offset(pivots, [2.0, 5.0, 5.5], Complex::new(3.0, y), assembly)
     };
-    let spec = LoadsSpec { metres: 0.01, applied: loads() };
+    let spec = LoadsSpec { metres: 0.01, applied: applied.clone() };
     let ([a, b], y) = ([[0.5, -0.3], [4.5, 1.0]], 2.0);
     let own = four_bar(a, b, y, AssemblyMode::Plus).expect("a linkage");
     let own = spec.on(&own.into()).expect("its names are known");
@@ -72,20 +78,21 @@ fn the_torque_of_an_image_is_that_of_the_linkage_with_the_sense_of_its_image() {
         for i in 0..40 {
             let angle = 0.157 * f64::from(i);
             let there = by.degrees(angle.to_degrees()).to_radians();
-            let torque = own.torque_and_size(angle, spec.crank_motion(), &mut own.scratch());
-            let of_image = image.torque_and_size(there, placed.crank_motion(), &mut image.scratch());
+            let torque = own.torque_and_size(angle, own.drive().motion(angle), &mut own.scratch());
+            let of_image = image.torque_and_size(there, image.drive().motion(there), &mut image.scratch());
             let ((torque, size), (of_image, _)) = (torque.expect("closed"), of_image.expect("closed"));
             let sign = if mirrors { -1.0 } else { 1.0 };
             assert!((torque - sign * of_image).abs() < 1e-11 * size, "{by:?} {angle}: {torque} {of_image}");
         }
     }
     let by = Similarity { scale: 4.0, ..Similarity::IDENTITY };
-    assert_eq!(spec.placed(&by), LoadsSpec { metres: 0.0025, applied: loads() });
+    assert_eq!(spec.placed(&by), LoadsSpec { metres: 0.0025, applied });
 }
 
 #[test]
 fn loads_come_back_from_their_record() {
-    let spec = LoadsSpec { metres: 0.001, applied: loads() };
+    let table = CrankSpeed::Table(vec![(0.4, 7.0), (1.9, 9.0)]);
+    let spec = LoadsSpec { metres: 0.001, applied: Loads { speed_rad_s: Some(table), ..loads() } };
     let text = serde_json::to_string(&spec).expect("JSON");
     assert_eq!(serde_json::from_str::<LoadsSpec>(&text).expect("loads"), spec);
     let bad = text.replace("[3.0,-2.0]", "[3.0]");

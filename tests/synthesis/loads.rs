@@ -6,6 +6,9 @@ use linkwright::internals::judge::verify::verify;
 use linkwright::internals::mechanism::loads::LoadedLinkage;
 use linkwright::internals::mechanism::{CrankLinkage, Linkage};
 use linkwright::internals::record::{Axis, Candidate, Record};
+use linkwright::internals::report::Colour;
+use linkwright::internals::report::html::report_html;
+use linkwright::internals::report::table::candidates_table;
 use linkwright::internals::synthesis::front::FrontRequest;
 use linkwright::spec::ProblemSpec;
 use linkwright::{Context, Job, Unit, run};
@@ -25,9 +28,11 @@ fn stride(set: &[(&str, &str)]) -> problem_file::ProblemFile {
 fn dense_peak(spec: &ProblemSpec, linkage: &CrankLinkage) -> f64 {
     let loads = spec.loads.as_ref().expect("it has loads");
     let loaded = LoadedLinkage::new(&Linkage::from(*linkage), Unit::Mm, &loads.applied).expect("names");
-    let (input, mut scratch) = (loads.crank_motion(), loaded.scratch());
+    let mut scratch = loaded.scratch();
     let at = |i: u32| {
-        loaded.balance(TAU * f64::from(i) / 2e4, input, &mut scratch).expect("a turning crank");
+        let angle = TAU * f64::from(i) / 2e4;
+        let input = loaded.drive().motion(angle);
+        loaded.balance(angle, input, &mut scratch).expect("a turning crank");
         scratch.torque().abs()
     };
     (0..20_000).map(at).fold(0.0, f64::max)
@@ -132,4 +137,51 @@ fn a_function_of_a_slider_crank_is_held_by_the_judge() {
     let held = run_on(2, parse(&text(&limit)));
     assert!(held.candidates.iter().all(|c| c.accepted == (peak(c) <= 0.5 * own) || !c.accepted));
     assert!(verify(&held).expect("it is one").is_empty());
+}
+
+/// The oval of a stride in mm, searched for with these kinds and limits, under a weight at P and the mass of what hangs there.
+fn oval(kinds: &str, require: &str) -> problem_file::ProblemFile {
+    let points: Vec<String> = (0..12)
+        .map(|i| TAU * f64::from(i) / 12.0)
+        .map(|t| format!("[{}, {}]", 60.0 * t.cos(), 20.0 * t.sin() + 6.0 * (2.0 * t).cos()))
+        .collect();
+    parse(&format!(
+        "format = 1\nunit = \"mm\"\n[task.path]\npoints = [{}]\nclosed = true\n[design]\nmechanism = {kinds}\n\
+         [require]\ntransmission_deg_min = 20\n{require}\n[solve]\ncandidates = 3\nevaluations = 30000\n\
+         [loads]\ngravity = [0, -9.81]\nspeed_rpm = [[0, 50], [150, 70]]\n\
+         [loads.body.P]\nmass_kg = 1\n[loads.body.crank]\nmass_kg = 0.2\nat = \"C\"\n\
+         [[loads.force]]\nat = \"P\"\nforce_N = [3, -2]\n",
+        points.join(", ")
+    ))
+}
+
+#[test]
+fn six_bars_have_the_peak_torque_of_a_dense_evaluation_and_are_judged_by_it() {
+    let record = run_on(2, oval("\"six-bar\"", ""));
+    assert!(!record.candidates.is_empty());
+    for candidate in &record.candidates {
+        let dense = dense_peak(&record.problem.resolved, &candidate.linkage);
+        assert!((peak(candidate) / dense - 1.0).abs() < 1e-6, "{} {dense}", peak(candidate));
+    }
+    assert_eq!(verify(&record).expect("it is one"), Vec::new());
+    let table = candidates_table(&record, Colour::Never);
+    assert!(table.contains("Peak torque on the crank under the loads"), "{table}");
+    assert!(report_html(&record, 0).contains("Largest force of every joint"));
+    // Half of the best one's own torque: each candidate is judged by it.
+    let limit = 0.5 * peak(&record.candidates[0]);
+    let held = run_on(2, oval("\"six-bar\"", &format!("peak_torque_max = {limit}")));
+    assert_eq!(verify(&held).expect("it is one"), Vec::new());
+    for candidate in &held.candidates {
+        let row = candidate.requirements.iter().find(|row| row.name == "peak_torque_max").expect("its row");
+        assert_eq!(row.met, peak(candidate) <= limit, "{row:?}");
+        assert!(row.met || !candidate.accepted);
+    }
+}
+
+#[test]
+fn a_ranking_over_kinds_has_the_torque_of_each() {
+    let kinds = "[\"four-bar\", \"slider-crank\", \"inverted-slider-crank\", \"six-bar\"]";
+    let record = run_on(2, oval(kinds, ""));
+    assert_eq!(verify(&record).expect("it is one"), Vec::new());
+    assert!(record.candidates.iter().all(|candidate| candidate.peak_torque.is_some()));
 }

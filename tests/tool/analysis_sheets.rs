@@ -33,7 +33,7 @@ fn request(linkage: FourBar, crank_deg: Vec<f64>, speed_rad_s: f64) -> Request {
         unit: Some(Unit::Mm),
         linkage,
         crank_deg,
-        input: CrankMotion::steady(speed_rad_s),
+        input: CrankMotion::steady(speed_rad_s).into(),
         methods: vec![PositionMethod::Natural],
         all_configurations: false,
     }
@@ -83,7 +83,8 @@ fn the_example_of_de_castro_has_his_figures() {
 fn a_crank_at_rest_has_no_vectors_and_one_that_starts_only_accelerations() {
     let mut start = request(shipped("romero"), vec![60.0], 0.0);
     assert_eq!(sheets(&analyze(&start)), [POSITIONS, CONSTRUCTION]);
-    start.input.acceleration_rad_s2 = 2.0;
+    start.input =
+        CrankMotion { speed_rad_s: start.input.mean().speed_rad_s, acceleration_rad_s2: 2.0 }.into();
     assert_eq!(sheets(&analyze(&start)), [POSITIONS, CONSTRUCTION, ACCELERATIONS]);
 }
 

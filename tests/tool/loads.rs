@@ -161,3 +161,60 @@ fn check_counts_loads_and_a_rewritten_linkage_says_that_it_drops_them() {
     let exported = linkwright(folder.path(), &["export", &pump, "--format", "dxf", "--out", "pump.dxf"]);
     assert_eq!(exported.0, 0, "{}", exported.2);
 }
+
+#[test]
+fn a_speed_over_the_crank_angle_has_its_acceleration_in_table_csv_and_json() {
+    let folder = TempDir::new().expect("a folder");
+    hoeken(folder.path());
+    let loads = "format = 1\nunit = \"cm\"\n[loads]\nspeed_rpm = [[0, 60], [120, 90], [240, 75]]\n\
+        [loads.body.crank]\nmass_kg = 0\ninertia_kg_m2 = 0.002\n";
+    fs::write(folder.path().join("table.toml"), loads).expect("a file");
+    let analyze = ["analyze", "hoeken.toml", "--loads", "table.toml", "--cycle", "24"];
+    let (code, stdout, stderr) = linkwright(folder.path(), &[&analyze[..], &["--csv", "t.csv"][..]].concat());
+    assert_eq!(code, 0, "{stderr}");
+    for words in ["The crank turns at", "rpm on average over time: a turn takes", "over the turn"] {
+        assert!(stdout.split_whitespace().collect::<Vec<_>>().join(" ").contains(words), "{words}: {stdout}");
+    }
+    assert!(!stdout.contains("flywheel of"), "{stdout}");
+    let csv = fs::read_to_string(folder.path().join("t.csv")).expect("it was written");
+    let mut lines = csv.lines().skip(1);
+    let head: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let column = |name: &str| head.iter().position(|other| *other == name).expect("a column");
+    let [omega, alpha, torque] = ["omega2_rad_s", "alpha2_rad_s2", "torque_N_m"].map(column);
+    for (i, line) in lines.enumerate() {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+        assert_eq!(cells.len(), head.len());
+        assert!((cells[torque] - 0.002 * cells[alpha]).abs() < 1e-14, "{line}");
+        if i == 8 {
+            assert!((cells[omega] - 3.0 * std::f64::consts::PI).abs() < 1e-12, "{line}");
+        }
+    }
+    let json = |more: &[&str]| {
+        let (code, stdout, stderr) = linkwright(folder.path(), &[&analyze[..], more, &["--json"]].concat());
+        assert_eq!(code, 0, "{stderr}");
+        serde_json::from_str::<serde_json::Value>(&stdout).expect("JSON")
+    };
+    let value = json(&[]);
+    let over = &value["loads"]["speed_over_turn"];
+    assert_eq!(value["omega2_rad_s"], over["mean_rad_s"]);
+    assert!(value["loads"].get("fluctuation").is_none() && over["turn_s"].is_f64());
+    // A speed of the command goes before the table.
+    let steady = json(&["--rpm", "60"]);
+    assert!(steady["loads"].get("speed_over_turn").is_none());
+    assert!(steady["configurations"][0]["rows"][0]["loads"].get("omega2_rad_s").is_none());
+    let (code, _, stderr) = linkwright(folder.path(), &[&analyze[..], &["--alpha", "2"][..]].concat());
+    assert!(code == 2 && stderr.contains("follows from it") && stderr.contains("rpm"), "{stderr}");
+    let drawn = linkwright(folder.path(), &[&analyze[..], &["--svg", "t.svg"][..]].concat());
+    assert_eq!(drawn.0, 0, "{}", drawn.2);
+    let mass = "[loads.body.coupler]\nmass_kg = 1\nat = \"P\"\n";
+    fs::write(folder.path().join("mass.toml"), loads.to_owned() + mass).expect("a file");
+    let balance = ["balance", "hoeken.toml", "--loads", "mass.toml", "--masses", "crank", "--radius", "2"];
+    let out = ["--even", "both", "--out", "balanced.toml"];
+    let (code, stdout, stderr) = linkwright(folder.path(), &[&balance[..], &out[..]].concat());
+    assert!(code == 0 && stdout.contains("counter-masses, at "), "{stdout}{stderr}");
+    let written = fs::read_to_string(folder.path().join("balanced.toml")).expect("it was written");
+    assert!(written.contains("speed_rpm = [[0.0, 60.0], [120.0, 90.0], [240.0, 75.0]]"), "{written}");
+    fs::write(folder.path().join("stops.toml"), loads.replace("90]", "0]")).expect("a file");
+    let (code, _, stderr) = linkwright(folder.path(), &["check", "stops.toml"]);
+    assert!(code != 0 && stderr.contains("nowhere 0") && stderr.contains("4:23"), "{stderr}");
+}

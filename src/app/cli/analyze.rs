@@ -11,6 +11,7 @@ use crate::files::name;
 use crate::mechanism::analysis::driven::{MechanismRequest, analyze_mechanism};
 use crate::mechanism::analysis::{Request, analyze, full_turn};
 use crate::mechanism::four_bar::motion::CrankMotion;
+use crate::mechanism::loads::{Drive, LoadFault};
 use crate::mechanism::{FourBar, Linkage, SliderCrank, Unit};
 use crate::report::analysis_csv::analysis_csv;
 use crate::report::analysis_sheets::analysis_svg;
@@ -38,8 +39,8 @@ pub fn run(options: &Analyze) -> Result<Ended, Ended> {
     let evenly = || full_turn(options.cycle.map_or(DEFAULT_POSITIONS, |n| n as usize));
     let crank_deg = options.angle.clone().unwrap_or_else(evenly);
     let speed = options.omega.or(options.rpm.map(|rpm| CrankMotion::steady_rpm(rpm).speed_rad_s));
-    let speed = speed.or(loads.as_ref().and_then(|loads| loads.speed_rad_s));
-    let input = CrankMotion { speed_rad_s: speed.unwrap_or(0.0), acceleration_rad_s2: options.alpha };
+    let told = |fault: LoadFault| refuse(format!("--alpha {}: {fault}; {}", options.alpha, fault.remedy()));
+    let input = Drive::chosen(speed, options.alpha, loads.as_ref()).map_err(told)?;
     let all_configurations = options.all_configurations;
     match linkage {
         Linkage::FourBar(linkage) => {

@@ -4,11 +4,10 @@ use super::arguments::Build as Options;
 use super::result;
 use super::result::Given;
 use super::{Ended, refuse, terminal};
+use crate::app::building::{self, NotBuilt, Sizes};
 use crate::files::diagnostic::escaped;
 pub use crate::judge::practicality::{Build, usual_tolerance};
 use crate::judge::practicality::{Practicality, Sweep};
-use crate::mechanism::plates::Shop;
-use crate::mechanism::plates::shop::Names;
 use crate::mechanism::{CrankLinkage, LinkageKind, Unit};
 use crate::record::Candidate;
 use crate::report::practicality::practicality_text;
@@ -19,47 +18,19 @@ use crate::task::Problem;
 pub fn run(options: &Options) -> Result<Ended, Ended> {
     let given = Subject::of(options)?;
     let Some(sweep) = &given.sweep else { return Err(nothing(&given.title)) };
-    let usual = || Build::usual_hole_of(sweep, given.unit);
-    let shop =
-        shop_in(given.unit, result::read_shop(&options.result, options.shop.as_ref(), &given.linkage)?)?;
-    let set = |own: Option<f64>, of: fn(&Shop) -> Option<f64>| own.or(shop.as_ref().and_then(of));
-    let hole = set(options.hole, |shop| shop.hole).or_else(usual);
-    let Some(hole) = hole else { return Err(no_room(&given)) };
-    let mut build = Build::new(hole, set(options.margin, |shop| shop.margin).unwrap_or(hole));
-    if let Some(shop) = shop {
-        build = build.with_shop(&given.linkage, shop);
-    }
-    let build = build.with_motor(options.motor_hole, options.boss_hole);
-    check(&given.linkage, &build)?;
+    let shop = result::read_shop(&options.result, options.shop.as_ref(), &given.linkage)?;
+    let Options { hole, margin, motor_hole, boss_hole, .. } = *options;
+    let sizes = Sizes { hole, margin, motor_hole, boss_hole };
+    let build =
+        building::build((&given.linkage, given.unit), sweep, shop, &sizes).map_err(|why| match why {
+            NotBuilt::NoRoom => no_room(&given),
+            why => refuse(why),
+        })?;
     let Some(practicality) = given.practicality(build) else { return Err(nothing(&given.title)) };
     let tolerance = options.tolerance.unwrap_or_else(|| usual_tolerance(given.linkage, given.unit));
     terminal::answer(&format!("{}\n  {}\n\n", given.title, given.linkage));
     terminal::answer(&practicality_text(&practicality, given.unit, tolerance, terminal::colour()));
     Ok(Ended::Good)
-}
-
-/// Refuses holes that are wider than their plates, and pins that are thicker than their holes.
-fn check(linkage: &CrankLinkage, build: &Build) -> Result<(), Ended> {
-    let Some(shop) = &build.shop else { return Ok(()) };
-    shop.check(&Names::of(linkage), &build.bores)
-        .map_err(|(key, fault)| refuse(format!("[shop] {}: {fault}: {}", key.join("."), fault.remedy())))
-}
-
-/// Returns shop data in the unit of a linkage.
-fn shop_in(unit: Option<Unit>, shop: Option<Shop>) -> Result<Option<Shop>, Ended> {
-    let Some(shop) = shop else { return Ok(None) };
-    let factor = match (shop.unit, unit) {
-        (None, _) => 1.0,
-        (Some(own), Some(unit)) => own.factor_to(unit),
-        (Some(own), None) => {
-            return Err(refuse(format!(
-                "the shop data are in {}, and the linkage has no unit: write unit = \"{}\" into its file, or remove it from the shop file",
-                own.label(),
-                own.label()
-            )));
-        }
-    };
-    Ok(Some(shop.scaled(factor, unit)))
 }
 
 /// The linkage that is to be built.

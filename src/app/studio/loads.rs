@@ -74,11 +74,11 @@ impl House {
         let unit = found.record.problem.unit.ok_or(DetailsError::NoUnit)?;
         let linkage = Linkage::from(found.candidate().linkage);
         let input = CrankMotion::steady_rpm(ask.rpm);
-        let record = load_record(&linkage, Some(unit), &loads(ask, &linkage, unit), input)?;
+        let record = load_record(&linkage, Some(unit), &loads(ask, &linkage, unit), &input.into())?;
         let strands = record.figures.iter().flat_map(|figures| &figures.torque_strands);
         let torque =
             strands.map(|strand| strand.iter().map(|(deg, torque)| [*deg, *torque]).collect()).collect();
-        Ok(Loaded { words: of_the_page(&words(&record, input.speed_rad_s)), torque })
+        Ok(Loaded { words: of_the_page(&words(&record, input)), torque })
     }
 }
 
@@ -147,6 +147,6 @@ mod tests {
         assert_eq!(loads.bodies, [BodyMass { body: "coupler".into(), mass }]);
         let ends = [Place::Joint("D".into()), Place::Fixed([0.1, 0.05])];
         assert_eq!(loads.springs, [Spring::Extension { ends, rate: 400.0, free_length: 0.03 }]);
-        assert!(load_record(&linkage, Some(Unit::Mm), &loads, CrankMotion::steady(0.0)).is_ok());
+        assert!(load_record(&linkage, Some(Unit::Mm), &loads, &CrankMotion::steady(0.0).into()).is_ok());
     }
 }

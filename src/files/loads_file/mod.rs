@@ -15,11 +15,11 @@ use super::linkage_file::{AnyLinkageFile, FORMAT, check_format, checked_name};
 use super::toml_text::{TomlText, nearest};
 use super::toml_values::{Count, OnlyTable};
 use crate::mechanism::loads::{
-    BodyMass, Couple, Force, ForceVector, LoadError, LoadFault, LoadKey, LoadedLinkage, Loads, Mass, Place,
-    Quantity, Spring,
+    BodyMass, Couple, CrankSpeed, Drive, Force, ForceVector, LoadError, LoadFault, LoadKey, LoadedLinkage,
+    Loads, Mass, Place, Quantity, Spring,
 };
-use crate::mechanism::{Linkage, LinkageKind, Unit};
-use raw::{RawBody, RawCouple, RawForce, RawPlace, RawSpring, Row};
+use crate::mechanism::{Linkage, Unit};
+use raw::{RawBody, RawCouple, RawForce, RawPlace, RawSpeed, RawSpring, Row};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::TAU;
@@ -35,6 +35,9 @@ struct RawLoadsFile {
     unit: Option<Unit>,
     loads: Option<OnlyTable<RawLoads>>,
 }
+
+/// The name of the coupler point, which also names the body that carries it.
+const TRACED: &str = "P";
 
 /// Help for lengths without a unit.
 const UNIT_HELP: &str =
@@ -58,7 +61,11 @@ pub fn load_alone(path: &Path) -> Checked<Loads> {
     let (text, file) = (input_text::read(path)?, path.display().to_string());
     let toml = TomlText { file: &file, text: input_text::without_mark(&text) };
     let (loads, unit) = tables(&toml)?;
-    Reader { toml: &toml, metres: unit.factor_to(Unit::M) }.loads(loads)
+    let loads = Reader { toml: &toml, metres: unit.factor_to(Unit::M) }.loads(loads)?;
+    if let Some(Err(fault)) = loads.speed_rad_s.as_ref().map(Drive::of) {
+        return Err(Box::new(explain(&toml, &LoadError { key: LoadKey::Top("speed"), fault })));
+    }
+    Ok(loads)
 }
 
 /// Reads the text of a file of loads; `file_name` is shown in diagnostics.
@@ -109,13 +116,13 @@ pub(crate) fn of_linkage_file(
     checked(toml, raw, unit, (linkage, unit))
 }
 
-/// Reads the loads of a problem, checked against a linkage of each kind that is searched for. Returns the unit of lengths in metres
-/// with them.
+/// Reads the loads of a problem, checked against a linkage of each structure that is searched for, with its name where there are
+/// several. Returns the unit of lengths in metres with them.
 pub(crate) fn of_problem(
     toml: &TomlText<'_>,
     raw: RawLoads,
     unit: Option<Unit>,
-    linkages: &[(LinkageKind, Linkage)],
+    linkages: &[(String, Linkage)],
 ) -> Checked<(f64, Loads)> {
     let Some(unit) = unit else {
         let message = "the key `unit` is missing: loads need the unit of lengths";
@@ -123,17 +130,28 @@ pub(crate) fn of_problem(
     };
     let metres = unit.factor_to(Unit::M);
     let loads = Reader { toml, metres }.loads(raw)?;
-    for (kind, linkage) in linkages {
+    for (name, linkage) in linkages {
         if let Err(error) = LoadedLinkage::new(linkage, unit, &loads) {
             let diagnostic = explain(toml, &error);
             let message = match linkages.len() {
                 1 => diagnostic.message.clone(),
-                _ => format!("{}, which is searched for: {}", kind.with_article(), diagnostic.message),
+                _ => format!("{name}, which is searched for: {}", diagnostic.message),
             };
             return Err(Box::new(Diagnostic { message, ..diagnostic }));
         }
     }
     Ok((metres, loads))
+}
+
+/// Converts a speed from turns a minute and degrees.
+fn speed(raw: RawSpeed) -> CrankSpeed {
+    let rad_s = |rpm: f64| rpm * (TAU / 60.0);
+    match raw {
+        RawSpeed::Steady(rpm) => CrankSpeed::Steady(rad_s(rpm.0)),
+        RawSpeed::Table(rows) => CrankSpeed::Table(
+            rows.into_iter().map(|Row([deg, rpm])| (deg.to_radians(), rad_s(rpm))).collect(),
+        ),
+    }
 }
 
 /// Converts raw loads to SI and checks them against a linkage.
@@ -168,9 +186,15 @@ fn parts(key: &LoadKey) -> Vec<String> {
 /// Returns the diagnostic of a load that does not fit, at the key that it is about; the values of a table are under `table`.
 fn explain(toml: &TomlText<'_>, error: &LoadError) -> Diagnostic {
     let mut parts = parts(&error.key);
-    let is_table = matches!(error.fault, LoadFault::BadTable);
-    if let Some(last) = parts.last_mut().filter(|_| is_table) {
-        *last = "table".to_owned();
+    let is_speed = matches!(error.key, LoadKey::Top(_));
+    match error.fault {
+        LoadFault::BadTable if !is_speed => {
+            if let Some(last) = parts.last_mut() {
+                *last = "table".to_owned();
+            }
+        }
+        LoadFault::SpeedJumps { row } | LoadFault::SpeedStops { row, .. } => parts.push(row.to_string()),
+        _ => {}
     }
     let message = error.fault.to_string();
     let whole_table = matches!(&error.key, LoadKey::Body(_, ""));
@@ -207,7 +231,7 @@ impl Reader<'_, '_> {
     fn loads(&self, raw: RawLoads) -> Checked<Loads> {
         let mut loads = Loads {
             gravity: raw.gravity.map_or([0.0; 2], |gravity| gravity.0),
-            speed_rad_s: raw.speed_rpm.map(|rpm| rpm.0 * (TAU / 60.0)),
+            speed_rad_s: raw.speed_rpm.map(speed),
             ..Loads::default()
         };
         for (body, OnlyTable(raw)) in raw.body.map_or_else(Default::default, |bodies| bodies.0) {
@@ -238,12 +262,14 @@ impl Reader<'_, '_> {
                     return refuse(key, "thickness and width go with density_kg_m3", "remove it");
                 }
                 let inertia_kg_m2 = raw.inertia_kg_m2.map_or(0.0, |inertia| inertia.0);
-                if let Some(joint) = &raw.at {
+                // The mass of what hangs at P lies there, whatever body carries it.
+                let own = (name == TRACED && raw.center.is_none()).then(|| TRACED.to_owned());
+                if let Some(joint) = raw.at.clone().or(own) {
                     if raw.center.is_some() {
                         let help = "keep one of the two keys";
                         return refuse("at", "two centres of mass: center and at", help);
                     }
-                    return Ok(Mass::AtJoint { mass_kg: mass.0, joint: joint.clone(), inertia_kg_m2 });
+                    return Ok(Mass::AtJoint { mass_kg: mass.0, joint, inertia_kg_m2 });
                 }
                 Ok(Mass::Given {
                     mass_kg: mass.0,

@@ -4,7 +4,7 @@ use crate::files::toml_values::{Number, OnlyTable, XY, list_of};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{self, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::{self, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -15,10 +15,13 @@ use std::fmt;
 pub(crate) struct RawLoads {
     /// The acceleration of free fall [x, y], m/s^2; none where this is missing.
     pub(super) gravity: Option<XY>,
-    /// The speed of the crank in turns a minute, where the command gives none.
-    pub(super) speed_rpm: Option<Number>,
+    /// The speed of the crank in turns a minute, where the command gives none: a number, or rows [crank angle in degrees, rpm] in
+    /// ascending order within one turn, all of one sign and none 0. Between them the speed is the periodic cubic spline through them,
+    /// so that the acceleration, omega d omega/d phi, is continuous.
+    pub(super) speed_rpm: Option<RawSpeed>,
     /// The mass of a body, by its name: crank, coupler, follower, block, link5 and so on; of a chain B-C, two joints of a link, or
-    /// block-D, the block of the stage that makes D. Bodies without a table have no mass.
+    /// block-D, the block of the stage that makes D. Of every kind, P: what the body that carries P bears beside its own mass, in P where
+    /// neither center nor at is given. Bodies without a table have no mass.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, RawBody>")]
     pub(super) body: Option<OnlyTable<BTreeMap<String, OnlyTable<RawBody>>>>,
@@ -118,6 +121,50 @@ pub(super) struct RawSpring {
     pub(super) torsion_rate: Option<Number>,
     /// The angle of the body's line from that of the other (of the ground, the x axis) at which a torsion spring bears no moment.
     pub(super) free_angle_deg: Option<Number>,
+}
+
+/// A speed: constant, or a table.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+pub(super) enum RawSpeed {
+    Steady(Number),
+    Table(#[schemars(with = "Vec<[Number; 2]>")] Vec<Row<2>>),
+}
+
+impl<'de> Deserialize<'de> for RawSpeed {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct SpeedVisitor;
+        impl<'de> Visitor<'de> for SpeedVisitor {
+            type Value = RawSpeed;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number, or a list of rows [degrees, rpm]")
+            }
+            fn visit_i64<E: de::Error>(self, rpm: i64) -> Result<RawSpeed, E> {
+                Number::deserialize(rpm.into_deserializer()).map(RawSpeed::Steady)
+            }
+            fn visit_f64<E: de::Error>(self, rpm: f64) -> Result<RawSpeed, E> {
+                Number::deserialize(rpm.into_deserializer()).map(RawSpeed::Steady)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<RawSpeed, A::Error> {
+                let mut rows = Vec::new();
+                while let Some(SpeedRow(row)) = seq.next_element()? {
+                    rows.push(row);
+                }
+                Ok(RawSpeed::Table(rows))
+            }
+        }
+        from.deserialize_any(SpeedVisitor)
+    }
+}
+
+/// A row of a table of speeds.
+struct SpeedRow(Row<2>);
+
+impl<'de> Deserialize<'de> for SpeedRow {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        list_of(from, "a row [degrees, rpm]").map(|row: [Number; 2]| SpeedRow(Row(row.map(|n| n.0))))
+    }
 }
 
 /// A row of a table.

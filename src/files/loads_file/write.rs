@@ -3,7 +3,9 @@
 use crate::files::generator::mark;
 use crate::files::linkage_file::FORMAT;
 use crate::mechanism::Unit;
-use crate::mechanism::loads::{BodyMass, Couple, Force, ForceVector, Loads, Mass, Place, Quantity, Spring};
+use crate::mechanism::loads::{
+    BodyMass, Couple, CrankSpeed, Force, ForceVector, Loads, Mass, Place, Quantity, Spring,
+};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -19,8 +21,13 @@ pub fn to_toml(name: &str, unit: Unit, loads: &Loads) -> String {
     if loads.gravity != [0.0; 2] {
         line(&mut text, "gravity", &numbers(&loads.gravity));
     }
-    if let Some(speed) = loads.speed_rad_s {
-        line(&mut text, "speed_rpm", &number(speed * 60.0 / TAU));
+    let rpm = |speed_rad_s: f64| speed_rad_s * 60.0 / TAU;
+    match &loads.speed_rad_s {
+        None => {}
+        Some(CrankSpeed::Steady(speed)) => line(&mut text, "speed_rpm", &number(rpm(*speed))),
+        Some(CrankSpeed::Table(table)) => {
+            line(&mut text, "speed_rpm", &rows(table.iter().map(|(angle, speed)| (*angle, [rpm(*speed)]))));
+        }
     }
     for body in &loads.bodies {
         writer.body(&mut text, body);
@@ -135,16 +142,18 @@ fn quantity<const N: usize>(text: &mut String, key: &str, value: &Quantity<N>) {
             [only] => line(text, key, &number(*only)),
             all => line(text, key, &numbers(all)),
         },
-        Quantity::Table(rows) => {
-            let row = |(angle, value): &(f64, [f64; N])| {
-                let cells: Vec<f64> =
-                    std::iter::once(angle.to_degrees()).chain(value.iter().copied()).collect();
-                numbers(&cells)
-            };
-            let rows: Vec<String> = rows.iter().map(row).collect();
-            line(text, "table", &format!("[{}]", rows.join(", ")));
-        }
+        Quantity::Table(table) => line(text, "table", &rows(table.iter().copied())),
     }
+}
+
+/// Returns the rows of a table over the crank angle, which is in radians.
+fn rows<const N: usize>(rows: impl Iterator<Item = (f64, [f64; N])>) -> String {
+    let row = |(angle, value): (f64, [f64; N])| {
+        let cells: Vec<f64> = std::iter::once(angle.to_degrees()).chain(value).collect();
+        numbers(&cells)
+    };
+    let rows: Vec<String> = rows.map(row).collect();
+    format!("[{}]", rows.join(", "))
 }
 
 fn string(text: &str) -> String {

@@ -3,18 +3,20 @@
 use crate::files::diagnostic::Checked;
 use crate::files::loads_file::{self, RawLoads};
 use crate::files::toml_text::TomlText;
+use crate::mechanism::dyad_chain::kinds::DyadChainKind;
 use crate::mechanism::loads::{Loads, Mass, Place, Spring};
+use crate::mechanism::multi_loop::LinkPair;
 use crate::mechanism::{
     AssemblyMode, Complex, FourBar, InvertedSliderCrank, InvertedSliderCrankParameters, Linkage, LinkageKind,
-    SliderCrank, SliderCrankParameters, Unit,
+    MultiLoop, SliderCrank, SliderCrankParameters, Unit,
 };
 use crate::task::spec::{DesignSpec, LoadsSpec, RequireSpec, TaskSpec};
 
 /// Returns the loads of a problem; `None` without a table.
 ///
 /// # Errors
-/// A diagnostic at the key: no unit of lengths; a body or a joint that a kind that is searched for does not have; six-bars and
-/// eight-bars, whose bodies differ from one to the next; P in a function; a limit of the torque without loads.
+/// A diagnostic at the key: no unit of lengths; a body or a joint that a kind that is searched for does not have, also one of the
+/// six-bars or eight-bars; P in a function; a limit of the torque without loads.
 pub(super) fn of(
     toml: &TomlText<'_>,
     raw: Option<RawLoads>,
@@ -30,17 +32,9 @@ pub(super) fn of(
         return Ok(None);
     };
     let kinds = LinkageKind::ALL.into_iter().filter(|kind| design.searches(*kind));
-    let mut linkages = Vec::new();
-    for kind in kinds {
-        let Some(linkage) = example(kind) else {
-            let message =
-                format!("loads go with linkages of one loop, and {} has several", kind.with_article());
-            let help =
-                "remove [loads], and look at what is found with `linkwright analyze LINKAGE --loads FILE`";
-            return toml.refuse_key("loads", message, help);
-        };
-        linkages.push((kind, linkage));
-    }
+    let of_kind =
+        |kind: LinkageKind| examples(kind).into_iter().map(move |linkage| (name(kind, &linkage), linkage));
+    let linkages: Vec<(String, Linkage)> = kinds.flat_map(of_kind).collect();
     let (metres, applied) = loads_file::of_problem(toml, raw, unit, &linkages)?;
     if task.is_function()
         && let Some(parts) = with_point(&applied)
@@ -51,10 +45,20 @@ pub(super) fn of(
     Ok(Some(LoadsSpec { metres, applied }))
 }
 
-/// Returns a linkage of a kind, by which names are checked; `None` of several loops.
-fn example(kind: LinkageKind) -> Option<Linkage> {
+/// Returns the name of a linkage's kind, with that of its chain if there are several.
+fn name(kind: LinkageKind, linkage: &Linkage) -> String {
+    match linkage {
+        Linkage::MultiLoop(linkage) if kind == LinkageKind::SixBar => {
+            format!("{} ({})", kind.with_article(), linkage.chain_kind().name())
+        }
+        _ => kind.with_article().to_string(),
+    }
+}
+
+/// Returns a linkage of each structure of a kind, by which names are checked.
+fn examples(kind: LinkageKind) -> Vec<Linkage> {
     let assembly = AssemblyMode::Plus;
-    match kind {
+    let of_one_loop = match kind {
         LinkageKind::FourBar => {
             let pivots = [Complex::new(0.0, 0.0), Complex::new(4.0, 0.0)];
             let offset = Complex::new(2.0, 1.0);
@@ -85,15 +89,37 @@ fn example(kind: LinkageKind) -> Option<Linkage> {
             };
             InvertedSliderCrank::new(parameters).ok().map(Linkage::InvertedSliderCrank)
         }
-        LinkageKind::SixBar | LinkageKind::EightBar => None,
-    }
+        LinkageKind::SixBar | LinkageKind::EightBar => {
+            let chains = kind.dyads().map_or_else(Vec::new, DyadChainKind::all);
+            return chains.into_iter().filter_map(several_loops).collect();
+        }
+    };
+    of_one_loop.into_iter().collect()
+}
+
+/// Returns a linkage of a kind of chain, whose joints are all at places of their own.
+fn several_loops(kind: DyadChainKind) -> Option<Linkage> {
+    let dyads = (0..kind.dyads()).map(|dyad| {
+        let apart = dyad as f64;
+        let ends = [Complex::new(0.3 + apart, 0.7), Complex::new(4.0 + apart, 0.4 * apart)];
+        LinkPair { ends, lengths: [4.0 + apart, 3.0 + apart], side: AssemblyMode::Plus }
+    });
+    let dyads: Vec<LinkPair> = dyads.collect();
+    let pivot = (Complex::new(0.0, 0.0), 1.0);
+    MultiLoop::new(kind, pivot, &dyads, Complex::new(2.0, 1.0))
+        .ok()
+        .map(|linkage| Linkage::MultiLoop(linkage.into()))
 }
 
 /// Returns the path of the first key that names P.
 fn with_point(loads: &Loads) -> Option<Vec<String>> {
     let is_point = |place: &Place| matches!(place, Place::Joint(name) if name == "P");
-    let path = |table: &str, of: &str, key: &str| ["loads", table, of, key].map(str::to_owned).to_vec();
+    let path = |table: &str, of: &str, key: &str| {
+        let parts = ["loads", table, of, key].into_iter().filter(|part| !part.is_empty());
+        parts.map(str::to_owned).collect::<Vec<String>>()
+    };
     let masses = loads.bodies.iter().find_map(|body| match &body.mass {
+        _ if body.body == "P" => Some(path("body", &body.body, "")),
         Mass::AtJoint { joint, .. } if joint == "P" => Some(path("body", &body.body, "at")),
         _ => None,
     });

@@ -123,8 +123,10 @@ at = [2.0, 1.0]
 Loads, in the table `[loads]` below the linkage or in a file of their own (`format`, `unit` and `[loads]`; `analyze LINKAGE --loads
 FILE`), need `unit`. Masses are in kg, forces in N, moments in N m, rates in N/m and N m/rad, lengths in the file's unit. A body is
 named `crank`, `coupler`, `follower`, `block` or `link5` to `link8`; of a chain it is two joints of the link (`B-C`), and `block-D` is the block
-of the stage that makes D. Places on a body count along the line from its first joint to its second, and to the left of it. Friction
-is left out: joints and sliders bear forces without loss.
+of the stage that makes D; `P` is what the body that carries P bears beside its own mass. Places on a body count along the line from
+its first joint to its second, and to the left of it. Friction is left out: joints and sliders bear forces without loss. A speed that
+changes over the turn is a table, `speed_rpm = [[0, 60], [120, 90], [240, 75]]`: the periodic cubic spline through rows of degrees and
+rpm, whose derivative is continuous; the acceleration of the crank is omega d omega/d phi. Its speeds have one sign and are nowhere 0.
 
 ```toml
 format = 1

@@ -4,8 +4,7 @@
 use super::Status;
 use super::loaded::LoadRecord;
 pub use crate::mechanism::chain::kind::CYCLE_SAMPLES;
-use crate::mechanism::four_bar::motion::CrankMotion;
-use crate::mechanism::loads::Instant;
+use crate::mechanism::loads::{Drive, Instant};
 use crate::mechanism::{Complex, Linkage, Mechanism, Output, OutputRate, Unit, bounding_box, xy};
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -22,7 +21,7 @@ pub struct MechanismRequest {
     /// The crank angles, degrees from the x axis.
     pub crank_deg: Vec<f64>,
     /// The motion of the crank.
-    pub input: CrankMotion,
+    pub input: Drive,
 }
 
 /// Position, velocity and acceleration of a point at one crank angle.
@@ -134,9 +133,12 @@ pub struct MechanismAnalysis {
     /// The kind; absent for chains.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kind: Option<&'static str>,
-    /// omega2, the angular velocity of the crank.
+    /// The motion of the crank.
+    #[serde(skip)]
+    pub drive: Drive,
+    /// omega2, the angular velocity of the crank; of a table of speeds its mean over time.
     pub omega2_rad_s: f64,
-    /// alpha2, the angular acceleration of the crank.
+    /// alpha2, the angular acceleration of the crank; of a table of speeds 0, its mean over time.
     pub alpha2_rad_s2: f64,
     /// Number of stages that follow the crank of a chain; absent for other kinds.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -191,8 +193,9 @@ pub fn analyze_mechanism(request: &MechanismRequest) -> MechanismAnalysis {
         name: request.name.clone(),
         unit: request.unit,
         kind: stages.is_none().then_some(mechanism.kind()),
-        omega2_rad_s: request.input.speed_rad_s,
-        alpha2_rad_s2: request.input.acceleration_rad_s2,
+        omega2_rad_s: request.input.mean().speed_rad_s,
+        alpha2_rad_s2: request.input.mean().acceleration_rad_s2,
+        drive: request.input.clone(),
         stages,
         trace: mechanism.joint_names()[mechanism.traced()].to_owned(),
         input_turns_fully: range.turns_fully,
@@ -200,7 +203,7 @@ pub fn analyze_mechanism(request: &MechanismRequest) -> MechanismAnalysis {
         mobility: range.circuits.zip(range.margin).map(of_loop),
         stroke,
         loads: None,
-        rows: request.crank_deg.iter().map(|deg| row(mechanism, *deg, request.input)).collect(),
+        rows: request.crank_deg.iter().map(|deg| row(mechanism, *deg, &request.input)).collect(),
     }
 }
 
@@ -216,8 +219,9 @@ pub fn slider_range(mechanism: &dyn Mechanism) -> Option<[f64; 2]> {
         .reduce(|[low, high], [x, y]| [low.min(x), high.max(y)])
 }
 
-fn row(mechanism: &dyn Mechanism, crank_deg: f64, input: CrankMotion) -> MechanismRow {
-    let motion = mechanism.motion_at(crank_deg.to_radians(), input);
+fn row(mechanism: &dyn Mechanism, crank_deg: f64, input: &Drive) -> MechanismRow {
+    let angle = crank_deg.to_radians();
+    let motion = mechanism.motion_at(angle, input.motion(angle));
     let (names, pose) = (mechanism.joint_names(), &motion.pose);
     let point = |(i, name): (usize, &&str)| PointRow {
         name: (*name).to_owned(),

@@ -2,9 +2,8 @@
 
 use super::Analysis;
 use super::driven::MechanismAnalysis;
-use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::mechanism::loads::{
-    Instant, LoadError, LoadFault, LoadFigures, LoadKey, LoadedLinkage, Loads, Scratch,
+    Drive, Instant, LoadError, LoadFault, LoadFigures, LoadKey, LoadedLinkage, Loads, Scratch,
 };
 use crate::mechanism::structure::{OutputBody, PairKind};
 use crate::mechanism::{Linkage, Unit};
@@ -44,7 +43,7 @@ fn prepared(linkage: &Linkage, unit: Option<Unit>, loads: &Loads) -> Result<Load
     LoadedLinkage::new(linkage, unit.ok_or_else(no_unit)?, loads)
 }
 
-fn record(loaded: &LoadedLinkage, input: CrankMotion) -> LoadRecord {
+fn record(loaded: &LoadedLinkage, drive: &Drive) -> LoadRecord {
     let names = loaded.pairs().iter().map(|pair| {
         let [at, on, from] = loaded.names(pair).map(str::to_owned);
         PairName { at, on, from, slides: pair.kind == PairKind::Prismatic }
@@ -53,7 +52,7 @@ fn record(loaded: &LoadedLinkage, input: CrankMotion) -> LoadRecord {
         pairs: names.collect(),
         output: loaded.output(),
         friction: "left out",
-        figures: loaded.figures(input),
+        figures: loaded.figures(drive),
     }
 }
 
@@ -65,19 +64,17 @@ pub fn load_record(
     linkage: &Linkage,
     unit: Option<Unit>,
     loads: &Loads,
-    input: CrankMotion,
+    drive: &Drive,
 ) -> Result<LoadRecord, LoadError> {
-    prepared(linkage, unit, loads).map(|loaded| record(&loaded, input))
+    prepared(linkage, unit, loads).map(|loaded| record(&loaded, drive))
 }
 
 /// Returns the result at a crank angle in degrees; `None` at one that is open, undetermined or a toggle.
-fn at(
-    loaded: &LoadedLinkage,
-    crank_deg: f64,
-    input: CrankMotion,
-    scratch: &mut Scratch,
-) -> Option<Box<Instant>> {
-    loaded.at(crank_deg.to_radians(), input, scratch).ok().map(Box::new)
+fn at(loaded: &LoadedLinkage, crank_deg: f64, drive: &Drive, scratch: &mut Scratch) -> Option<Box<Instant>> {
+    let angle = crank_deg.to_radians();
+    let mut instant = loaded.at(angle, drive.motion(angle), scratch).ok()?;
+    instant.input = drive.range().map(|_| drive.motion(angle));
+    Some(Box::new(instant))
 }
 
 impl Analysis {
@@ -86,15 +83,14 @@ impl Analysis {
     /// # Errors
     /// [`LoadError`] if the loads do not fit the linkage, or the analysis has no unit.
     pub fn add_loads(&mut self, loads: &Loads) -> Result<(), LoadError> {
-        let input = CrankMotion { speed_rad_s: self.omega2_rad_s, acceleration_rad_s2: self.alpha2_rad_s2 };
         for configuration in &mut self.configurations {
             let loaded = prepared(&Linkage::FourBar(configuration.linkage), self.unit, loads)?;
             let scratch = &mut loaded.scratch();
             for row in &mut configuration.rows {
-                row.loads = at(&loaded, row.crank_deg, input, scratch);
+                row.loads = at(&loaded, row.crank_deg, &self.drive, scratch);
             }
             // The linkage's own configuration comes first.
-            self.loads.get_or_insert_with(|| record(&loaded, input));
+            self.loads.get_or_insert_with(|| record(&loaded, &self.drive));
         }
         Ok(())
     }
@@ -107,12 +103,11 @@ impl MechanismAnalysis {
     /// [`LoadError`] if the loads do not fit the linkage, or the analysis has no unit.
     pub fn add_loads(&mut self, linkage: &Linkage, loads: &Loads) -> Result<(), LoadError> {
         let loaded = prepared(linkage, self.unit, loads)?;
-        let input = CrankMotion { speed_rad_s: self.omega2_rad_s, acceleration_rad_s2: self.alpha2_rad_s2 };
         let scratch = &mut loaded.scratch();
         for row in &mut self.rows {
-            row.loads = at(&loaded, row.crank_deg, input, scratch);
+            row.loads = at(&loaded, row.crank_deg, &self.drive, scratch);
         }
-        self.loads = Some(record(&loaded, input));
+        self.loads = Some(record(&loaded, &self.drive));
         Ok(())
     }
 }

@@ -13,8 +13,8 @@ use crate::mechanism::Unit;
 use crate::mechanism::four_bar::loop_closure::{
     Iteration, IterationOptions, IterationVerdict, LoopRoot, LoopRoots, Singularity,
 };
-use crate::mechanism::four_bar::motion::{CrankMotion, Motion};
-use crate::mechanism::loads::Instant;
+use crate::mechanism::four_bar::motion::Motion;
+use crate::mechanism::loads::{Drive, Instant};
 use crate::mechanism::{
     AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates, point, xy,
 };
@@ -80,7 +80,7 @@ pub struct Request {
     /// The crank angles, degrees from the x axis.
     pub crank_deg: Vec<f64>,
     /// The motion of the crank.
-    pub input: CrankMotion,
+    pub input: Drive,
     /// The methods besides the natural coordinates, which are always used.
     pub methods: Vec<PositionMethod>,
     /// Whether all four (t1, t2) are analysed instead of the linkage's own.
@@ -245,9 +245,12 @@ pub struct Analysis {
     /// The unit that labels lengths.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<Unit>,
-    /// omega2, the angular velocity of the crank.
+    /// The motion of the crank.
+    #[serde(skip)]
+    pub drive: Drive,
+    /// omega2, the angular velocity of the crank; of a table of speeds its mean over time.
     pub omega2_rad_s: f64,
-    /// alpha2, the angular acceleration of the crank.
+    /// alpha2, the angular acceleration of the crank; of a table of speeds 0, its mean over time.
     pub alpha2_rad_s2: f64,
     /// The mobility of the linkage.
     pub mobility: MobilityRecord,
@@ -284,8 +287,9 @@ pub fn analyze(request: &Request) -> Analysis {
         format: 1,
         name: request.name.clone(),
         unit: request.unit,
-        omega2_rad_s: request.input.speed_rad_s,
-        alpha2_rad_s2: request.input.acceleration_rad_s2,
+        omega2_rad_s: request.input.mean().speed_rad_s,
+        alpha2_rad_s2: request.input.mean().acceleration_rad_s2,
+        drive: request.input.clone(),
         mobility: mobility(&request.linkage),
         loads: None,
         configurations,
@@ -294,7 +298,7 @@ pub fn analyze(request: &Request) -> Analysis {
 
 fn row(linkage: &FourBar, crank_deg: f64, request: &Request) -> Row {
     let angle = crank_deg.to_radians();
-    let motion = linkage.motion(angle, request.input);
+    let motion = linkage.motion(angle, request.input.motion(angle));
     let status = match motion {
         Motion::Definite(_) => Status::Ok,
         Motion::Singular(_) => Status::Singular,

@@ -32,6 +32,7 @@
 
 use super::gradient::TOGGLE_SINE;
 use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints, Position, dot, turned};
+use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// sin^2 of the transmission angle at and below which a position counts as a toggle, as a part of
@@ -40,11 +41,13 @@ use std::f64::consts::TAU;
 pub const TOGGLE_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Motion of the crank at one instant: angular velocity omega2 and angular acceleration alpha2.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CrankMotion {
     /// omega2, rad/s, counter-clockwise positive.
+    #[serde(rename = "omega2_rad_s")]
     pub speed_rad_s: f64,
     /// alpha2, rad/s^2, counter-clockwise positive.
+    #[serde(rename = "alpha2_rad_s2")]
     pub acceleration_rad_s2: f64,
 }
 

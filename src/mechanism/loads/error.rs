@@ -1,5 +1,6 @@
 //! Reasons why loads do not fit a linkage, each with the load and the key that it is about.
 
+use std::f64::consts::TAU;
 use std::fmt;
 
 /// A load, and one of its keys.
@@ -70,6 +71,27 @@ pub enum LoadFault {
     Negative(f64),
     /// A table of fewer than two rows, or not in ascending order within one turn.
     BadTable,
+    /// A table of speeds with two speeds at one crank angle, its first and its last row a turn apart.
+    SpeedJumps {
+        /// The row, counted from 0.
+        row: usize,
+    },
+    /// A table of speeds with a row of 0 or of the other sign.
+    SpeedStops {
+        /// The row, counted from 0.
+        row: usize,
+        /// Its speed.
+        speed_rad_s: f64,
+    },
+    /// A table of speeds whose smooth curve reaches 0 between two rows.
+    SpeedStopsBetween {
+        /// The crank angle of its slowest speed, radians.
+        crank_angle: f64,
+        /// That speed.
+        speed_rad_s: f64,
+    },
+    /// An acceleration beside a table of speeds.
+    AccelerationOfTable,
     /// The linkage is beyond the limits of a chain.
     NoChain,
     /// The linkage has no unit of lengths.
@@ -97,6 +119,26 @@ impl fmt::Display for LoadFault {
             LoadFault::BadTable => {
                 f.write_str("a table needs two rows or more, with ascending crank angles within one turn")
             }
+            LoadFault::AccelerationOfTable => f.write_str(
+                "the loads give the speed over the crank angle, and the acceleration follows from it",
+            ),
+            LoadFault::SpeedJumps { .. } => {
+                f.write_str("the first and the last row are a turn apart, and their speeds differ")
+            }
+            LoadFault::SpeedStops { speed_rad_s: 0.0, .. } => {
+                f.write_str("the crank stops in this row: a speed over the crank angle is nowhere 0")
+            }
+            LoadFault::SpeedStops { speed_rad_s, .. } => write!(
+                f,
+                "the crank turns back in this row, at {} rpm: all speeds over the crank angle have one sign",
+                rpm(*speed_rad_s)
+            ),
+            LoadFault::SpeedStopsBetween { crank_angle, speed_rad_s } => write!(
+                f,
+                "between two rows, at {:.2} degrees, the smooth curve through the speeds falls to {:.3} rpm: it is nowhere 0",
+                crank_angle.to_degrees(),
+                rpm(*speed_rad_s)
+            ),
             LoadFault::NoUnit => {
                 f.write_str("the linkage has no unit, so that its lengths in metres are not known")
             }
@@ -115,6 +157,10 @@ impl LoadFault {
             }
             LoadFault::SecondMass(_) => "keep one of the two tables".into(),
             LoadFault::OnGround => "name a body that moves, or leave this out".into(),
+            LoadFault::NotOnBody { joint, carriers, .. } if carriers.len() == 1 => format!(
+                "{joint} is on {}; what hangs at {joint}, whatever body carries it, is the body {joint:?}",
+                listed(carriers)
+            ),
             LoadFault::NotOnBody { joint, carriers, .. } => format!("{joint} is on {}", listed(carriers)),
             LoadFault::ForceAtFixedPoint => {
                 "name a joint, or a place on a body: { body = \"coupler\", at = [20, 5] }".into()
@@ -129,10 +175,24 @@ impl LoadFault {
             LoadFault::NotFinite(_) => "write a finite number".into(),
             LoadFault::Negative(_) => "write a number of 0 or more".into(),
             LoadFault::BadTable => "write rows such as [[0, 5], [90, 8], [270, 2]]".into(),
+            LoadFault::AccelerationOfTable => {
+                "leave the acceleration out, or give a constant speed with it (omega or rpm)".into()
+            }
+            LoadFault::SpeedJumps { .. } => "write the same speed in both, or leave the last row out".into(),
+            LoadFault::SpeedStops { .. } => {
+                "write speeds of one sign, none of them 0: a crank that stops or turns back has no speed over its angle".into()
+            }
+            LoadFault::SpeedStopsBetween { .. } => "add rows there, or make the change less steep".into(),
             LoadFault::NoUnit => "write unit = \"mm\" (or cm, m, in) into the linkage's file".into(),
             LoadFault::NoChain => "use smaller numbers".into(),
         }
     }
+}
+
+/// Returns a speed in turns a minute.
+fn rpm(speed_rad_s: f64) -> f64 {
+    // To six digits after the point: the speed was converted.
+    (speed_rad_s * 60.0 / TAU * 1e6).round() / 1e6
 }
 
 /// Returns names as a list; more than 24 are no help.

@@ -11,17 +11,22 @@
 //! omega_min)/omega, is about E/(J omega^2). A flywheel of inertia I_f on the crank makes it E/((J + I_f) omega^2) (R. L. Norton,
 //! Design of Machinery, dynamic force analysis, flywheel design: I = E/(k omega^2)), so that I_f = J halves it.
 //!
+//! With a table of speeds over the crank angle (see [`drive`](super::drive)) the torque includes what speeds the bodies up and slows
+//! them down. The work of a turn is W = integral T dphi, it takes the time t = integral dphi/|omega|, and the mean power is W/t; the root
+//! mean square is over time. The fluctuation of speed is then given, not a result: E, its coefficient and the flywheel, which assume a
+//! constant speed, are not defined and left out.
+//!
 //! Samples are [`SAMPLES`] to a turn, about half a degree apart; every peak is refined by golden-section search. Where the crank
 //! does not turn fully the torque has no bound at the toggles that end its arcs; the figures are over the arcs less [`MARGIN`] at
 //! each end, and the energy's swing and the flywheel, which belong to a full turn, are left out.
 
+use super::drive::{Drive, SpeedRange};
 use super::kinematics::Kinematics;
 use super::loaded::{LoadedLinkage, Scratch};
 use super::peaks::largest;
 use super::resolve::SpringOn;
 use crate::mechanism::Complex;
 use crate::mechanism::any::Status;
-use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::mechanism::length;
 use crate::mechanism::structure::PairKind;
 use serde::Serialize;
@@ -101,16 +106,20 @@ pub struct LoadFigures {
     /// The torque of largest size, N m.
     #[serde(rename = "torque_peak_N_m")]
     pub torque_peak: Peak,
-    /// The root mean square of the torque, N m.
+    /// The root mean square of the torque over time, N m.
     #[serde(rename = "torque_rms_N_m")]
     pub torque_rms: f64,
-    /// The mean torque, N m.
+    /// The mean torque over the crank angle, N m: the work of a turn over 2 pi.
     #[serde(rename = "torque_mean_N_m")]
     pub torque_mean: f64,
-    /// The mean power, W, over arcs in the one sense of the speed: 0 of a crank that stands still.
+    /// The mean power over time, W: the work over the time that it takes; over arcs in the one sense of the speed; 0 of a crank that
+    /// stands still.
     #[serde(rename = "power_mean_W")]
     pub power_mean: f64,
-    /// The swing of energy; absent where the crank does not turn fully.
+    /// The speeds over a turn; absent of a constant speed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_over_turn: Option<SpeedRange>,
+    /// The swing of energy; absent where the crank does not turn fully, and of a table of speeds, which gives the fluctuation itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fluctuation: Option<Fluctuation>,
     /// The largest force of each pair, in the order of the structure.
@@ -163,6 +172,8 @@ struct Sample {
     values: Vec<f64>,
     torque: f64,
     reflected: f64,
+    /// The part of time spent there: 1/|omega| of a table of speeds, else 1.
+    dwell: f64,
     deflections: Vec<f64>,
 }
 
@@ -178,7 +189,7 @@ impl LoadedLinkage {
     /// Computes the figures over the range of the crank, which moves as given (0: statics).
     ///
     /// `None` if the linkage closes at no crank angle.
-    pub fn figures(&self, input: CrankMotion) -> Option<LoadFigures> {
+    pub fn figures(&self, drive: &Drive) -> Option<LoadFigures> {
         let mut scratch = self.scratch();
         let range = self.crank_range();
         let stretches: Vec<[f64; 2]> = if range.turns_fully {
@@ -189,9 +200,9 @@ impl LoadedLinkage {
         };
         let sweeps: Vec<Sweep> = stretches
             .iter()
-            .map(|stretch| self.sweep(*stretch, range.turns_fully, input, &mut scratch))
+            .map(|stretch| self.sweep(*stretch, range.turns_fully, drive, &mut scratch))
             .collect();
-        let mut peak = |quantity: usize| self.peak(&sweeps, quantity, input, &mut scratch);
+        let mut peak = |quantity: usize| self.peak(&sweeps, quantity, drive, &mut scratch);
         let torque_peak = peak(TORQUE)?;
         let joints = self.pairs().iter().enumerate().filter_map(|(i, pair)| {
             let [at, on, from] = self.names(pair).map(str::to_owned);
@@ -207,8 +218,8 @@ impl LoadedLinkage {
             Some(Peak { value: 1.0 / fastest.value, ..fastest }).filter(|least| least.value.is_finite())
         };
         let (advantage_least, output) = (advantage(POINT_RATE), advantage(OUTPUT_RATE));
-        let [mean, mean_sq] = means(&sweeps);
-        let full_turn = range.turns_fully;
+        let Means { torque: mean, torque_rms, pace } = means(&sweeps);
+        let (full_turn, speed_over_turn) = (range.turns_fully, drive.range());
         Some(LoadFigures {
             full_turn,
             arcs_deg: if full_turn {
@@ -218,13 +229,15 @@ impl LoadedLinkage {
             },
             left_out_deg: left_out(&sweeps),
             torque_peak,
-            torque_rms: mean_sq.sqrt(),
+            torque_rms,
             torque_mean: mean,
-            power_mean: mean * input.speed_rad_s,
+            power_mean: mean
+                * drive.range().map_or(drive.mean().speed_rad_s, |range| range.mean_rad_s.signum() / pace),
             fluctuation: sweeps
                 .first()
-                .filter(|_| full_turn)
-                .and_then(|sweep| fluctuation(sweep, input.speed_rad_s)),
+                .filter(|_| full_turn && speed_over_turn.is_none())
+                .and_then(|sweep| fluctuation(sweep, drive.mean().speed_rad_s)),
+            speed_over_turn,
             joints,
             shaking_force,
             shaking_moment,
@@ -235,20 +248,15 @@ impl LoadedLinkage {
         })
     }
 
-    fn sweep(
-        &self,
-        [from, to]: [f64; 2],
-        periodic: bool,
-        input: CrankMotion,
-        scratch: &mut Scratch,
-    ) -> Sweep {
+    fn sweep(&self, [from, to]: [f64; 2], periodic: bool, drive: &Drive, scratch: &mut Scratch) -> Sweep {
         let steps = (((to - from) / TAU * SAMPLES as f64).ceil() as usize).max(24);
         let (step, count) = ((to - from) / steps as f64, if periodic { steps } else { steps + 1 });
-        let samples = (0..count).map(|i| self.sample(from + step * i as f64, input, scratch).ok()).collect();
+        let samples = (0..count).map(|i| self.sample(from + step * i as f64, drive, scratch).ok()).collect();
         Sweep { begin: from, step, periodic, samples }
     }
 
-    fn sample(&self, angle: f64, input: CrankMotion, scratch: &mut Scratch) -> Result<Sample, Status> {
+    fn sample(&self, angle: f64, drive: &Drive, scratch: &mut Scratch) -> Result<Sample, Status> {
+        let input = drive.motion(angle);
         self.balance(angle, input, scratch)?;
         let (shaking, shaking_moment) = scratch.shaking();
         let rates = self.advantage(scratch).map(|advantage| advantage.map_or(0.0, |of| 1.0 / of));
@@ -260,24 +268,19 @@ impl LoadedLinkage {
             });
         }
         let (torque, reflected) = (scratch.torque(), self.reflected_inertia(scratch));
-        Ok(Sample { values, torque, reflected, deflections: self.deflections(scratch.places()) })
+        let dwell = drive.dwell(angle);
+        Ok(Sample { values, torque, reflected, dwell, deflections: self.deflections(scratch.places()) })
     }
 
     /// Returns the value of largest size of a quantity over all sweeps.
-    fn peak(
-        &self,
-        sweeps: &[Sweep],
-        quantity: usize,
-        input: CrankMotion,
-        scratch: &mut Scratch,
-    ) -> Option<Peak> {
+    fn peak(&self, sweeps: &[Sweep], quantity: usize, drive: &Drive, scratch: &mut Scratch) -> Option<Peak> {
         let mut best: Option<(f64, f64)> = None;
         for sweep in sweeps {
             let of = |sample: &Option<Sample>| sample.as_ref().map(|sample| sample.values[quantity].abs());
             let sizes: Vec<Option<f64>> = sweep.samples.iter().map(of).collect();
             let is_refined = quantity < OF_PAIRS || self.pairs().len() <= REFINED_PAIRS;
             let found = largest(&sizes, (sweep.begin, sweep.step), sweep.periodic, |angle| {
-                let sample = if is_refined { self.sample(angle, input, scratch).ok() } else { None };
+                let sample = if is_refined { self.sample(angle, drive, scratch).ok() } else { None };
                 sample.map(|sample| sample.values[quantity].abs())
             });
             best = match (best, found) {
@@ -286,7 +289,7 @@ impl LoadedLinkage {
             };
         }
         let (angle, _) = best?;
-        let value = self.sample(angle, input, scratch).ok()?.values[quantity];
+        let value = self.sample(angle, drive, scratch).ok()?.values[quantity];
         Some(Peak { value, crank_deg: degrees(angle, sweeps.iter().any(|sweep| sweep.periodic)) })
     }
 
@@ -324,22 +327,35 @@ fn left_out(sweeps: &[Sweep]) -> Vec<f64> {
     sweeps.iter().flat_map(of).collect()
 }
 
-/// Returns the mean torque and the mean of its square over the crank angle: sums over a full turn, which is periodic, and the
-/// trapezium rule over arcs.
-fn means(sweeps: &[Sweep]) -> [f64; 2] {
-    let (mut sums, mut weight) = ([0.0, 0.0], 0.0);
+/// Means over all sweeps.
+struct Means {
+    /// The torque over the crank angle.
+    torque: f64,
+    /// The root mean square of the torque over time.
+    torque_rms: f64,
+    /// The time spent for each radian, in the unit of [`Sample::dwell`].
+    pace: f64,
+}
+
+/// Returns the means: sums over a full turn, which is periodic, and the trapezium rule over arcs.
+fn means(sweeps: &[Sweep]) -> Means {
+    let (mut work, mut square, mut time, mut turned) = (0.0, 0.0, 0.0, 0.0);
     for sweep in sweeps {
         let last = sweep.samples.len() - 1;
         for (i, sample) in sweep.samples.iter().enumerate() {
-            let Some(Sample { torque, .. }) = sample else { continue };
+            let Some(Sample { torque, dwell, .. }) = sample else { continue };
             let is_end = !sweep.periodic && (i == 0 || i == last);
             let share = if is_end { 0.5 * sweep.step } else { sweep.step };
-            sums[0] += share * torque;
-            sums[1] += share * torque * torque;
-            weight += share;
+            work += share * torque;
+            square += share * dwell * torque * torque;
+            time += share * dwell;
+            turned += share;
         }
     }
-    if weight > 0.0 { sums.map(|sum| sum / weight) } else { sums }
+    if turned <= 0.0 {
+        return Means { torque: 0.0, torque_rms: 0.0, pace: 1.0 };
+    }
+    Means { torque: work / turned, torque_rms: (square / time).sqrt(), pace: time / turned }
 }
 
 /// Computes the swing of energy over a full turn; `None` if a sample is missing.

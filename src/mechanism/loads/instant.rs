@@ -1,5 +1,6 @@
 //! The result at one crank angle, as data.
 
+use crate::mechanism::four_bar::motion::CrankMotion;
 use serde::Serialize;
 
 /// The force that a body puts on another at a joint.
@@ -25,6 +26,9 @@ pub struct JointForce {
 /// Torque, forces and energies at one crank angle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Instant {
+    /// The crank's speed and acceleration there; absent of a constant speed.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub input: Option<CrankMotion>,
     /// The torque of the motor on the crank, counter-clockwise positive, N m.
     #[serde(rename = "torque_N_m")]
     pub torque: f64,

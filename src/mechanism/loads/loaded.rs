@@ -2,6 +2,7 @@
 
 use super::Loads;
 use super::applied::{Applied, Wrench};
+use super::drive::Drive;
 use super::error::{LoadError, LoadFault, LoadKey};
 use super::instant::{Instant, JointForce};
 use super::kinematics::{Kinematics, Source};
@@ -9,8 +10,8 @@ use super::newton::{Reaction, balance};
 use super::resolve::{BodyInertia, Names, Resolved, SpringOn};
 use crate::mechanism::any::{CrankRange, Mechanism, Status};
 use crate::mechanism::four_bar::motion::CrankMotion;
-use crate::mechanism::structure::{GROUND, OutputBody, Pair, PairKind, Structure};
-use crate::mechanism::{Complex, Linkage, Unit, dot};
+use crate::mechanism::structure::{Body, GROUND, OutputBody, Pair, PairKind, Structure};
+use crate::mechanism::{Complex, Linkage, MultiLoop, Unit, dot, multi_loop, plates};
 
 /// A linkage with its loads: names are resolved, lengths in metres.
 ///
@@ -87,6 +88,22 @@ struct Inertial {
     reflected: f64,
 }
 
+/// Returns the names of the plates of a chain that is a six-bar or an eight-bar, in the order of its bodies, so that loads of a problem
+/// also fit the files of its results; empty for others.
+fn plate_names(linkage: &Linkage, structure: &Structure, joints: &[String]) -> Vec<&'static str> {
+    let Linkage::Chain(chain) = linkage else { return Vec::new() };
+    let Ok(known) = MultiLoop::from_chain(chain) else { return Vec::new() };
+    let links = known.links();
+    let name = |body: &Body| {
+        let carries = |name: &str| body.joints.iter().any(|(joint, _)| joints[*joint] == name);
+        let is_it = |link: &&multi_loop::Body| {
+            link.joints.len() == body.joints.len() && link.joints.iter().all(|(name, _)| carries(name))
+        };
+        links.iter().find(is_it).map_or("", |link| plates::Link::OF_BODIES[link.body].name())
+    };
+    structure.bodies.iter().map(name).collect()
+}
+
 impl LoadedLinkage {
     /// Resolves the names of loads against a linkage whose lengths are in a unit.
     ///
@@ -108,7 +125,9 @@ impl LoadedLinkage {
         let structure = mechanism.structure();
         let joints: Vec<String> = mechanism.joint_names().into_iter().map(str::to_owned).collect();
         let scale = metres;
-        let loads = Names { structure: &structure, joints: &joints, scale }.resolve(loads)?;
+        let others = plate_names(linkage, &structure, &joints);
+        let loads =
+            Names { structure: &structure, joints: &joints, others: &others, scale }.resolve(loads)?;
         let (pairs, traced) = (structure.pairs().collect(), mechanism.traced());
         Ok(LoadedLinkage { source, structure, pairs, joints, traced, scale, loads })
     }
@@ -150,6 +169,11 @@ impl LoadedLinkage {
             Source::Loop(linkage) => linkage.mechanism().crank_range(),
             Source::Chain(chain) => chain.crank_range(),
         }
+    }
+
+    /// Returns the motion of the crank at the speed of the loads; it stands still without one.
+    pub fn drive(&self) -> &Drive {
+        &self.loads.drive
     }
 
     /// Returns the output; `None` of kinds without a certain one.
@@ -281,6 +305,7 @@ impl LoadedLinkage {
         let [advantage, output_advantage] = self.advantage(scratch);
         let kinetic = 0.5 * self.reflected_inertia(scratch) * input.speed_rad_s * input.speed_rad_s;
         Ok(Instant {
+            input: None,
             torque: scratch.torque,
             power: scratch.torque * input.speed_rad_s,
             forces: self.pairs.iter().zip(&scratch.reactions).map(force).collect(),

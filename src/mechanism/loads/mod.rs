@@ -26,6 +26,7 @@
 //! |---|---|
 //! | `applied` | forces, couples and springs at one position |
 //! | [`balance`] | springs and counter-masses that balance a loaded linkage |
+//! | [`drive`] | the crank's speed and acceleration, also of a table of speeds over the crank angle |
 //! | [`error`] | why loads do not fit a linkage |
 //! | [`figures`] | figures over the range of the crank: peaks, means, fluctuation |
 //! | [`instant`] | the result at one crank angle, as data |
@@ -35,10 +36,12 @@
 //! | `peaks` | refinement of the largest of sampled values |
 //! | [`quantity`] | quantities that are constant, or given over the crank angle |
 //! | `resolve` | names of bodies and joints resolved against a linkage |
+//! | `spline` | periodic cubic splines |
 //! | `torque_peak` | the torque of largest size over a stretch of crank angles |
 
 mod applied;
 pub mod balance;
+pub mod drive;
 pub mod error;
 pub mod figures;
 pub mod instant;
@@ -48,8 +51,10 @@ pub mod newton;
 mod peaks;
 pub mod quantity;
 mod resolve;
+mod spline;
 mod torque_peak;
 
+pub use drive::{CrankSpeed, Drive, SpeedRange};
 pub use error::{LoadError, LoadFault, LoadKey};
 pub use figures::{LoadFigures, Peak};
 pub use instant::{Instant, JointForce};
@@ -67,7 +72,7 @@ pub struct Loads {
     pub gravity: [f64; 2],
     /// The speed of the crank, rad/s, if none is given elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub speed_rad_s: Option<f64>,
+    pub speed_rad_s: Option<CrankSpeed>,
     /// The masses of bodies; others have none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<BodyMass>,

@@ -1,5 +1,6 @@
 //! Quantities of N numbers that are constant, or given over the crank angle.
 
+use super::LoadFault;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -68,6 +69,30 @@ impl<const N: usize> JsonSchema for Quantity<N> {
 }
 
 impl<const N: usize> Quantity<N> {
+    /// Checks that all numbers are finite, and that a table has two rows or more, in ascending order within one turn.
+    ///
+    /// # Errors
+    /// [`LoadFault::NotFinite`] or [`LoadFault::BadTable`].
+    pub(super) fn check(&self) -> Result<(), LoadFault> {
+        let finite = |values: &[f64]| match values.iter().find(|value| !value.is_finite()) {
+            Some(value) => Err(LoadFault::NotFinite(*value)),
+            None => Ok(()),
+        };
+        match self {
+            Quantity::Constant(value) => finite(value),
+            Quantity::Table(rows) => {
+                rows.iter().try_for_each(|(angle, value)| {
+                    finite(&[*angle])?;
+                    finite(value)
+                })?;
+                let ascends = rows.windows(2).all(|pair| pair[0].0 < pair[1].0);
+                let turn = TAU * (1.0 + 4.0 * f64::EPSILON);
+                let within = rows.len() > 1 && rows[rows.len() - 1].0 - rows[0].0 <= turn;
+                if ascends && within { Ok(()) } else { Err(LoadFault::BadTable) }
+            }
+        }
+    }
+
     /// Returns the value at a crank angle (radians).
     pub(super) fn at(&self, crank_angle: f64) -> [f64; N] {
         let rows = match self {

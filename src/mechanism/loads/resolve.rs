@@ -1,11 +1,11 @@
 //! Names of bodies and joints resolved against a linkage, and masses of plates from their outlines.
 
+use super::drive::Drive;
 use super::error::{LoadError, LoadFault, LoadKey};
 use super::{Couple, Force, ForceVector, Loads, Mass, Place, Quantity, Spring};
 use crate::mechanism::plates::moments::Moments;
 use crate::mechanism::structure::{GROUND, Structure};
 use crate::mechanism::{Complex, point};
-use std::f64::consts::TAU;
 
 /// A body's mass, m and I in kg and kg m^2, with the centre along and across the body in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,8 +55,9 @@ pub(super) enum SpringOn {
 }
 
 /// Loads with indices of bodies and joints.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Resolved {
+    pub(super) drive: Drive,
     pub(super) gravity: Complex,
     pub(super) masses: Vec<BodyInertia>,
     pub(super) forces: Vec<ForceOn>,
@@ -68,6 +69,8 @@ pub(super) struct Resolved {
 pub(super) struct Names<'a> {
     pub(super) structure: &'a Structure,
     pub(super) joints: &'a [String],
+    /// The names that the bodies have beside their own, in their order: those of a six-bar's plates of a chain that is one.
+    pub(super) others: &'a [&'static str],
     /// Metres in the linkage's unit.
     pub(super) scale: f64,
 }
@@ -91,19 +94,7 @@ fn not_negative(key: LoadKey, value: f64) -> Checked<()> {
 }
 
 fn quantity<const N: usize>(key: &LoadKey, value: &Quantity<N>) -> Checked<()> {
-    match value {
-        Quantity::Constant(value) => finite(key.clone(), value),
-        Quantity::Table(rows) => {
-            rows.iter().try_for_each(|(angle, value)| {
-                finite(key.clone(), &[*angle])?;
-                finite(key.clone(), value)
-            })?;
-            let ascends = rows.windows(2).all(|pair| pair[0].0 < pair[1].0);
-            let turn = TAU * (1.0 + 4.0 * f64::EPSILON);
-            let within = rows.len() > 1 && rows[rows.len() - 1].0 - rows[0].0 <= turn;
-            if ascends && within { Ok(()) } else { error(key.clone(), LoadFault::BadTable) }
-        }
-    }
+    value.check().or_else(|fault| error(key.clone(), fault))
 }
 
 impl Names<'_> {
@@ -113,15 +104,29 @@ impl Names<'_> {
     /// [`LoadError`], the first in the order of [`Loads`].
     pub(super) fn resolve(&self, loads: &Loads) -> Checked<Resolved> {
         finite(LoadKey::Top("gravity"), &loads.gravity)?;
-        if let Some(speed) = loads.speed_rad_s {
-            finite(LoadKey::Top("speed"), &[speed])?;
-        }
-        let mut found = Resolved { gravity: point(loads.gravity), ..Resolved::default() };
+        let drive = match loads.speed_rad_s.as_ref().map_or_else(|| Ok(Drive::still()), Drive::of) {
+            Ok(drive) => drive,
+            Err(fault) => return error(LoadKey::Top("speed"), fault),
+        };
+        let mut found = Resolved {
+            drive,
+            gravity: point(loads.gravity),
+            masses: Vec::new(),
+            forces: Vec::new(),
+            couples: Vec::new(),
+            springs: Vec::new(),
+        };
+        let mut named: Vec<usize> = Vec::new();
         for load in &loads.bodies {
             let key = |key| LoadKey::Body(load.body.clone(), key);
             let body = self.moving_body(key(""), &load.body)?;
-            if found.masses.iter().any(|other| other.body == body) {
+            // A mass under the name of a point is beside that of the body that carries it.
+            let of_point = self.names_its_body(&load.body);
+            if !of_point && named.contains(&body) {
                 return error(key(""), LoadFault::SecondMass(load.body.clone()));
+            }
+            if !of_point {
+                named.push(body);
             }
             found.masses.push(self.inertia(&load.body, body, &load.mass)?);
         }
@@ -143,10 +148,14 @@ impl Names<'_> {
         self.structure.bodies.iter().map(|body| body.name.clone()).collect()
     }
 
-    /// Returns the body of a name: its own, `crank`, `ground`, or two joints of it such as C-D.
+    /// Returns the body of a name: its own, `crank`, `ground`, two joints of it such as C-D, or a point that it alone carries such as
+    /// P.
     fn body(&self, key: LoadKey, name: &str) -> Checked<usize> {
         let bodies = &self.structure.bodies;
-        if let Some(body) = bodies.iter().position(|body| body.name == name) {
+        let own = bodies.iter().position(|body| body.name == name);
+        if let Some(body) =
+            own.or_else(|| self.others.iter().position(|other| !name.is_empty() && *other == name))
+        {
             return Ok(body);
         }
         if name == "crank" && bodies.len() > 1 {
@@ -156,13 +165,20 @@ impl Names<'_> {
             let joints: Vec<&str> =
                 bodies[body].joints.iter().map(|(joint, _)| self.joints[*joint].as_str()).collect();
             let is_pair = |p: &&str| joints.iter().any(|q| p != q && format!("{p}-{q}") == name);
-            joints.join("-") == name || joints.iter().any(is_pair)
+            let carries = |p: &&str| *p == name && self.names_its_body(name);
+            joints.join("-") == name || joints.iter().any(is_pair) || joints.iter().any(carries)
         };
         let mut found = (1..bodies.len()).filter(|body| names_it(*body));
         match (found.next(), found.next()) {
             (Some(body), None) => Ok(body),
             _ => error(key, LoadFault::UnknownBody { name: name.to_owned(), known: self.body_names() }),
         }
+    }
+
+    /// Returns whether a name is that of a point which one body alone carries.
+    fn names_its_body(&self, name: &str) -> bool {
+        let joint = self.joints.iter().position(|joint| joint == name);
+        joint.is_some_and(|joint| self.structure.carriers(joint).count() == 1)
     }
 
     fn moving_body(&self, key: LoadKey, name: &str) -> Checked<usize> {

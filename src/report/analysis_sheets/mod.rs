@@ -41,7 +41,7 @@ pub const CYCLE_ROWS: usize = 24;
 /// let linkage = FourBar::with_coupler_offset([point([0.0, 0.0]), point([4.0, 1.0])], [2.0, 5.0, 5.0],
 ///     point([2.5, 4.3]), AssemblyMode::Plus)?;
 /// let request = Request { name: "mine".into(), unit: None, linkage, crank_deg: vec![30.0, 60.0],
-///     input: CrankMotion::steady(1.0), methods: vec![], all_configurations: false };
+///     input: CrankMotion::steady(1.0).into(), methods: vec![], all_configurations: false };
 /// let svg = linkwright::internals::report::analysis_sheets::analysis_svg(&analyze(&request));
 /// assert!(svg.contains("Construction by arcs") && svg.contains("Velocities"));
 /// # Ok::<(), LinkageError>(())
@@ -126,6 +126,10 @@ fn counted(rows: &[Row]) -> String {
 
 fn input(analysis: &Analysis) -> String {
     let mut text = format!("ω2 = {} rad/s", brief(analysis.omega2_rad_s, 5));
+    if let Some(range) = analysis.drive.range() {
+        let [slowest, fastest] = [range.slowest_rad_s, range.fastest_rad_s].map(|speed| brief(speed, 5));
+        return format!("ω2 = {slowest} to {fastest} rad/s");
+    }
     if analysis.alpha2_rad_s2 != 0.0 {
         text.push_str(&format!(", α2 = {} rad/s²", brief(analysis.alpha2_rad_s2, 5)));
     }

@@ -103,7 +103,7 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
                 notes.push("omega_rad_s = 1: velocities are those at 1 rad/s".to_owned());
                 1.0
             });
-            let (name, input) = (subject.name.clone(), CrankMotion::steady(speed_rad_s));
+            let (name, input) = (subject.name.clone(), CrankMotion::steady(speed_rad_s).into());
             let crank_deg = full_turn(settings.positions());
             notes.extend(
                 subject.frame_deg.map(|deg| format!("the body's angle is coupler_deg + {}", exact(deg))),

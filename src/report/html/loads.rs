@@ -13,7 +13,7 @@ use maud::{Markup, html};
 pub(super) fn loads(record: &Record, c: &Candidate, title: &str) -> Markup {
     let figures = record.problem.resolved.loads.as_ref().and_then(|loads| {
         let loaded = loads.on(&c.linkage).ok()?;
-        loaded.figures(loads.crank_motion())
+        loaded.figures(loaded.drive())
     });
     let Some(figures) = figures else { return Markup::default() };
     let heads = [

@@ -4,7 +4,9 @@ use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
 use linkwright::internals::mechanism::loads::balance::{
     BalanceError, MassAim, MassRequest, SpringEnds, SpringRequest, balance_by_masses, balance_by_spring,
 };
-use linkwright::internals::mechanism::loads::{BodyMass, LoadedLinkage, Loads, Mass, Place, Spring};
+use linkwright::internals::mechanism::loads::{
+    BodyMass, CrankSpeed, Drive, LoadedLinkage, Loads, Mass, Place, Spring,
+};
 use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar, Linkage, Unit};
 use std::f64::consts::{PI, TAU};
 
@@ -180,7 +182,7 @@ fn counter_masses_on_crank_and_follower_take_away_the_shaking_force() {
         bodies: vec!["crank".into(), "follower".into()],
         radius: 0.06,
         aim: MassAim::ShakingForce,
-        speed: 20.0,
+        drive: CrankMotion::steady(20.0).into(),
     };
     let found = balance_by_masses(&four_bar(), Unit::Mm, &moving(), &request).expect("masses");
     assert!(found.shaking_percent < 1e-6, "{}", found.shaking_percent);
@@ -195,13 +197,26 @@ fn counter_masses_on_crank_and_follower_take_away_the_shaking_force() {
     assert!(
         found.before.shaking_force > 1.0 && found.after.shaking_force < 1e-6 * found.before.shaking_force
     );
+    // The centre of mass stands still at any speed.
+    let table = CrankSpeed::Table(vec![(0.0, 20.0), (1.0, 28.0), (4.0, 17.0)]);
+    let drive = Drive::of(&table).expect("a table");
+    let over_turn = balance_by_masses(&four_bar(), Unit::Mm, &moving(), &MassRequest { drive, ..request });
+    let over_turn = over_turn.expect("masses");
+    assert!(over_turn.shaking_percent < 1e-6, "{}", over_turn.shaking_percent);
+    let pairs = found.masses.iter().zip(&over_turn.masses);
+    assert!(pairs.into_iter().all(|(one, other)| (one.mass_kg - other.mass_kg).abs() < 1e-6));
+    assert!((over_turn.before.torque_peak - found.before.torque_peak).abs() > 0.1 * found.before.torque_peak);
 }
 
 #[test]
 fn counter_masses_even_the_torque_of_a_weight() {
     // The weight of the crank alone: a counter-mass of the same moment takes all of it.
-    let request =
-        MassRequest { bodies: vec!["crank".into()], radius: 0.05, aim: MassAim::Torque, speed: 0.0 };
+    let request = MassRequest {
+        bodies: vec!["crank".into()],
+        radius: 0.05,
+        aim: MassAim::Torque,
+        drive: CrankMotion::steady(0.0).into(),
+    };
     let found = balance_by_masses(&four_bar(), Unit::Mm, &lamp(), &request).expect("masses");
     assert!(found.ripple_percent < 1e-6, "{found:?}");
     let [mass] = found.masses.as_slice() else { panic!("one mass: {:?}", found.masses) };
@@ -211,14 +226,19 @@ fn counter_masses_even_the_torque_of_a_weight() {
     loads.gravity = [0.0, -G];
     let both = ["crank".to_owned(), "follower".to_owned()].to_vec();
     let ripple = |aim| {
-        let request = MassRequest { bodies: both.clone(), radius: 0.06, aim, speed: 3.0 };
+        let request =
+            MassRequest { bodies: both.clone(), radius: 0.06, aim, drive: CrankMotion::steady(3.0).into() };
         balance_by_masses(&four_bar(), Unit::Mm, &loads, &request).expect("masses")
     };
     let (torque, all) = (ripple(MassAim::Torque), ripple(MassAim::Both));
     assert!(torque.ripple_percent < 100.0 && torque.ripple_percent <= all.ripple_percent + 1e-9);
     assert!(all.shaking_percent < 100.0);
-    let coupler =
-        MassRequest { bodies: vec!["coupler".into()], radius: 0.06, aim: MassAim::Both, speed: 3.0 };
+    let coupler = MassRequest {
+        bodies: vec!["coupler".into()],
+        radius: 0.06,
+        aim: MassAim::Both,
+        drive: CrankMotion::steady(3.0).into(),
+    };
     let refused = balance_by_masses(&four_bar(), Unit::Mm, &loads, &coupler).expect_err("no pivot");
     assert!(refused.to_string().contains("crank, follower do"), "{refused}");
 }

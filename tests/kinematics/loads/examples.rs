@@ -11,7 +11,7 @@ use linkwright::internals::mechanism::{
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{PI, TAU};
 
-fn mass(body: &str, mass_kg: f64, center: [f64; 2], inertia_kg_m2: f64) -> BodyMass {
+pub(super) fn mass(body: &str, mass_kg: f64, center: [f64; 2], inertia_kg_m2: f64) -> BodyMass {
     BodyMass { body: body.to_owned(), mass: Mass::Given { mass_kg, center, inertia_kg_m2 } }
 }
 
@@ -20,7 +20,7 @@ fn push(at: Place, force: [f64; 2]) -> Force {
 }
 
 /// N. N. Romero's four-bar, in cm.
-fn romero() -> FourBar {
+pub(super) fn romero() -> FourBar {
     FourBar::new(NaturalCoordinates {
         crank_pivot: [0.0, 0.0],
         follower_pivot: [4.0, 1.0],
@@ -69,7 +69,7 @@ fn a_crank_that_alone_has_mass_is_a_pendulum() {
         // Nothing but the crank's pivot bears a load.
         assert!(at.forces[1..].iter().all(|f| f.force.is_some_and(|[x, y]| x.hypot(y) < 1e-12)));
     }
-    let figures = loaded.figures(CrankMotion::steady(7.0)).expect("it turns");
+    let figures = loaded.figures(&CrankMotion::steady(7.0).into()).expect("it turns");
     assert!((figures.torque_peak.value.abs() - 0.1962).abs() < 1e-14);
     assert!((figures.torque_rms - 0.1962 / 2_f64.sqrt()).abs() < 1e-14 && figures.torque_mean.abs() < 1e-15);
     let swing = figures.fluctuation.expect("a full turn");
@@ -368,7 +368,7 @@ fn a_toggle_has_a_status_and_no_number() {
         assert_eq!(loaded.torque(toggle.crank_angle, still, scratch).unwrap_err(), Status::Singular);
     }
     assert_eq!(loaded.torque(PI, still, scratch).unwrap_err(), Status::Open);
-    let figures = loaded.figures(still).expect("it closes somewhere");
+    let figures = loaded.figures(&still.into()).expect("it closes somewhere");
     assert!(!figures.full_turn && figures.arcs_deg.len() == 1 && figures.fluctuation.is_none());
     assert!(figures.torque_peak.value.is_finite());
 }

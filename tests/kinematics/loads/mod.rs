@@ -5,6 +5,8 @@ mod balance;
 mod draws;
 mod equilibrium;
 mod examples;
+mod names;
+mod speeds;
 
 use draws::{KINDS, linkage, loads};
 use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
@@ -144,7 +146,7 @@ fn over_a_turn_at_constant_speed_conservative_loads_take_no_work() {
                 (sum, size) = (sum + torque, size + torque.abs());
             }
             assert!(sum.abs() < 1e-9 * size, "{kind} {seed}: {sum:e} of {size:e}");
-            let figures = loaded.figures(CrankMotion::steady(4.0)).expect("it closes");
+            let figures = loaded.figures(&CrankMotion::steady(4.0).into()).expect("it closes");
             assert!(figures.full_turn && figures.torque_mean.abs() < 1e-6 * figures.torque_rms);
         }
     }
@@ -163,7 +165,7 @@ fn peaks_are_not_below_any_of_dense_samples_and_close_to_the_largest() {
             let (loaded, _) = fitting(&linkage, loads(&linkage, seed, true));
             let scratch = &mut loaded.scratch();
             let input = CrankMotion::steady(2.0);
-            let figures = loaded.figures(input).expect("it closes");
+            let figures = loaded.figures(&input.into()).expect("it closes");
             let (mut torque, mut forces) = (0.0_f64, vec![0.0_f64; figures.joints.len()]);
             for k in 0..20_000 {
                 if loaded.balance(TAU * f64::from(k) / 20_000.0, input, scratch).is_err() {
@@ -204,7 +206,7 @@ fn a_spring_that_is_wound_past_half_a_turn_is_named() {
     };
     let loads = Loads { springs: vec![torsion("crank"), torsion("coupler")], ..Loads::default() };
     let loaded = LoadedLinkage::new(&linkage, Unit::Mm, &loads).expect("its names are known");
-    let figures = loaded.figures(CrankMotion::steady(1.0)).expect("it closes");
+    let figures = loaded.figures(&CrankMotion::steady(1.0).into()).expect("it closes");
     // The coupler rocks.
     assert_eq!(figures.overwound_springs, [1]);
 }

@@ -1,20 +1,21 @@
 //! Counter-masses on bodies that turn about fixed pivots, for an even torque over a turn, a quiet frame, or both.
 //!
 //! Masses m_k >= 0 at a given radius, in [`DIRECTIONS`] directions of each body, add their torque and their force on the ground in
-//! proportion to m_k at a given speed of the crank. With T - T_m the torque less its mean, and S - S_m the shaking force likewise
+//! proportion to m_k at a given motion of the crank. With T - T_m the torque less its mean, and S - S_m the shaking force likewise
 //! (weights press evenly, and do not shake), the masses make
 //!
 //! ```text
 //! sum |T - T_m|^2 / sum |T_0 - T_m0|^2          or   sum |S - S_m|^2 / sum |S_0 - S_m0|^2,   or the sum of both,
 //! ```
 //!
-//! least: non-negative least squares. Masses in neighbouring directions of one body are then one: of their mass, their centre and
+//! least: non-negative least squares. Means and sums are over time: of a table of speeds over the crank angle each sample counts by
+//! 1/|omega|. Masses in neighbouring directions of one body are then one: of their mass, their centre and
 //! their inertia (R. S. Berkof and G. G. Lowen, A new method for completely force balancing simple linkages, ASME J. Eng. Ind. 91
 //! (1969) 21-26, balance the shaking force of a four-bar by counter-masses on crank and follower: exactly, if the coupler's centre
 //! lies on its line).
 
 use super::{BalanceError, percent};
-use crate::mechanism::four_bar::motion::CrankMotion;
+use crate::mechanism::loads::drive::Drive;
 use crate::mechanism::loads::loaded::LoadedLinkage;
 use crate::mechanism::loads::resolve::BodyInertia;
 use crate::mechanism::loads::{BodyMass, Loads, Mass};
@@ -58,8 +59,8 @@ pub struct MassRequest {
     pub radius: f64,
     /// The quantity to be made even.
     pub aim: MassAim,
-    /// The speed of the crank, rad/s.
-    pub speed: f64,
+    /// The motion of the crank: a speed, or a table of speeds over its angle.
+    pub drive: Drive,
 }
 
 /// A counter-mass.
@@ -110,41 +111,49 @@ pub struct MassBalance {
     pub loads: Loads,
 }
 
-/// Torque and shaking force over a turn.
+/// Torque and shaking force over a turn, each with the part of the time that the crank spends there.
 struct Turn {
     torques: Vec<f64>,
     forces: Vec<Complex>,
+    shares: Vec<f64>,
 }
 
 impl Turn {
-    fn of(loaded: &LoadedLinkage, input: CrankMotion, samples: usize) -> Result<Turn, BalanceError> {
+    fn of(loaded: &LoadedLinkage, drive: &Drive, samples: usize) -> Result<Turn, BalanceError> {
         let mut scratch = loaded.scratch();
-        let mut turn = Turn { torques: Vec::with_capacity(samples), forces: Vec::with_capacity(samples) };
+        let mut turn = Turn { torques: Vec::new(), forces: Vec::new(), shares: Vec::new() };
         for i in 0..samples {
             let angle = TAU * i as f64 / samples as f64;
-            let balanced = loaded.balance(angle, input, &mut scratch);
+            let balanced = loaded.balance(angle, drive.motion(angle), &mut scratch);
             balanced.map_err(|_| BalanceError::NotClosed { crank_deg: angle.to_degrees() })?;
             turn.torques.push(scratch.torque());
             turn.forces.push(scratch.shaking().0);
+            turn.shares.push(drive.dwell(angle));
         }
+        let time: f64 = turn.shares.iter().sum();
+        turn.shares.iter_mut().for_each(|share| *share /= time);
         Ok(turn)
     }
 
     fn uneven_torques(&self) -> Vec<f64> {
-        let mean = self.torques.iter().sum::<f64>() / self.torques.len() as f64;
+        let mean: f64 = self.torques.iter().zip(&self.shares).map(|(torque, share)| torque * share).sum();
         self.torques.iter().map(|torque| torque - mean).collect()
     }
 
     /// Returns the components of the forces less their mean.
     fn uneven_forces(&self) -> Vec<f64> {
-        let mean = self.forces.iter().sum::<Complex>() / self.forces.len() as f64;
+        let mean: Complex = self.forces.iter().zip(&self.shares).map(|(force, share)| force * share).sum();
         self.forces.iter().flat_map(|force| [force.re - mean.re, force.im - mean.im]).collect()
     }
 
     fn unevenness(&self) -> Unevenness {
-        let count = self.torques.len() as f64;
         let (torques, forces) = (self.uneven_torques(), self.uneven_forces());
-        let rms = |values: &[f64]| (values.iter().map(|x| x * x).sum::<f64>() / count).sqrt();
+        // Each share is of one torque, or of the two components of a force.
+        let rms = |values: &[f64]| {
+            let squares = values.chunks_exact(values.len() / self.shares.len());
+            let square = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>();
+            squares.zip(&self.shares).map(|(values, share)| share * square(values)).sum::<f64>().sqrt()
+        };
         // The force of weights alone is constant but for rounding.
         let whole = self.forces.iter().map(|force| force.norm()).fold(0.0, f64::max);
         let shakes = |force: f64| if force < ROUNDING * whole { 0.0 } else { force };
@@ -158,10 +167,12 @@ impl Turn {
         }
     }
 
-    /// Returns what is to be made even, each quantity in parts of `scales`.
+    /// Returns what is to be made even, each quantity in parts of `scales`, so that the sum of squares is over time.
     fn rows(&self, aim: MassAim, scales: &Unevenness) -> Vec<f64> {
         let part = |values: Vec<f64>, scale: f64| {
-            values.into_iter().map(move |x| if scale > 0.0 { x / scale } else { 0.0 })
+            let each = values.len() / self.shares.len();
+            let weighted = move |(i, x): (usize, f64)| x / scale * self.shares[i / each].sqrt();
+            values.into_iter().enumerate().map(move |x| if scale > 0.0 { weighted(x) } else { 0.0 })
         };
         let torques = || part(self.uneven_torques(), scales.torque_ripple);
         let forces = || part(self.uneven_forces(), scales.shaking_force_rms);
@@ -199,8 +210,8 @@ pub fn balance_by_masses(
         return Err(BalanceError::NoFullTurn);
     }
     let bodies = pivoted(&loaded, linkage, unit, request)?;
-    let input = CrankMotion::steady(request.speed);
-    let own = Turn::of(&loaded, input, SAMPLES)?;
+    let drive = &request.drive;
+    let own = Turn::of(&loaded, drive, SAMPLES)?;
     let scales = own.unevenness();
     let rows = own.rows(request.aim, &scales);
     if rows.iter().all(|x| x.abs() < LEAST_USE) {
@@ -215,7 +226,7 @@ pub fn balance_by_masses(
             let mass = Mass::Given { mass_kg: 1.0, center: [center.re, center.im], inertia_kg_m2: 0.0 };
             let bodies = vec![BodyMass { body: name, mass }];
             let alone = Loads { gravity: loads.gravity, bodies, ..Loads::default() };
-            let turn = Turn::of(&LoadedLinkage::new(linkage, unit, &alone)?, input, SAMPLES)?;
+            let turn = Turn::of(&LoadedLinkage::new(linkage, unit, &alone)?, drive, SAMPLES)?;
             let column = turn.rows(request.aim, &scales);
             let size = super::length(&column);
             sizes.push(size);
@@ -230,8 +241,8 @@ pub fn balance_by_masses(
     let masses: Vec<f64> =
         found.values.iter().zip(&sizes).map(|(m, size)| if *size > 0.0 { m / size } else { 0.0 }).collect();
     let (masses, balanced) = added(&loaded, loads, &bodies, request.radius, &masses);
-    let before = Turn::of(&loaded, input, VERIFIED)?.unevenness();
-    let after = Turn::of(&LoadedLinkage::new(linkage, unit, &balanced)?, input, VERIFIED)?.unevenness();
+    let before = Turn::of(&loaded, drive, VERIFIED)?.unevenness();
+    let after = Turn::of(&LoadedLinkage::new(linkage, unit, &balanced)?, drive, VERIFIED)?.unevenness();
     Ok(MassBalance {
         masses,
         before,

@@ -18,6 +18,7 @@ pub use error::BalanceError;
 pub use masses::{CounterMass, MassAim, MassBalance, MassRequest, balance_by_masses};
 pub use spring::{SpringBalance, SpringEnds, SpringRequest, balance_by_spring};
 
+use super::drive::Drive;
 use super::figures::Peak;
 use super::loaded::LoadedLinkage;
 use crate::mechanism::four_bar::motion::CrankMotion;
@@ -40,19 +41,22 @@ pub struct TorqueOver {
 }
 
 impl TorqueOver {
-    /// Computes the torque over a range of crank angles (radians).
+    /// Computes the torque of a crank at rest over a range of crank angles (radians).
     ///
     /// # Errors
     /// [`BalanceError::NotClosed`] at the first sample at which the linkage is open or at a toggle.
-    fn of(loaded: &LoadedLinkage, range: [f64; 2], input: CrankMotion) -> Result<Self, BalanceError> {
-        let torques = torques(loaded, range, VERIFIED, input)?;
+    fn of(loaded: &LoadedLinkage, range: [f64; 2]) -> Result<Self, BalanceError> {
+        let torques = torques(loaded, range, VERIFIED)?;
         let rms = (torques.iter().map(|t| t * t).sum::<f64>() / torques.len() as f64).sqrt();
         let largest = || {
             let all = torques.iter().enumerate().max_by(|(_, s), (_, t)| s.abs().total_cmp(&t.abs()));
             let (i, value) = all.map_or((0, 0.0), |(i, value)| (i, *value));
             Peak { value, crank_deg: angle(range, VERIFIED, i).to_degrees() }
         };
-        Ok(TorqueOver { peak: loaded.torque_peak_over(Some(range), input).unwrap_or_else(largest), rms })
+        Ok(TorqueOver {
+            peak: loaded.torque_peak_over(Some(range), &Drive::still()).unwrap_or_else(largest),
+            rms,
+        })
     }
 }
 
@@ -61,17 +65,12 @@ fn angle([from, to]: [f64; 2], steps: usize, i: usize) -> f64 {
     from + (to - from) * i as f64 / steps as f64
 }
 
-/// Computes the torque at the steps of a range.
-fn torques(
-    loaded: &LoadedLinkage,
-    range: [f64; 2],
-    steps: usize,
-    input: CrankMotion,
-) -> Result<Vec<f64>, BalanceError> {
+/// Computes the torque of a crank at rest at the steps of a range.
+fn torques(loaded: &LoadedLinkage, range: [f64; 2], steps: usize) -> Result<Vec<f64>, BalanceError> {
     let mut scratch = loaded.scratch();
     let at = |i: usize| {
         let angle = angle(range, steps, i);
-        let torque = loaded.torque(angle, input, &mut scratch);
+        let torque = loaded.torque(angle, CrankMotion::steady(0.0), &mut scratch);
         torque.map_err(|_| BalanceError::NotClosed { crank_deg: angle.to_degrees() })
     };
     (0..=steps).map(at).collect()

@@ -83,11 +83,10 @@ pub fn balance_by_spring(
     request: &SpringRequest,
 ) -> Result<SpringBalance, BalanceError> {
     check(request)?;
-    let still = CrankMotion::steady(0.0);
     let range = request.range;
     let loaded = LoadedLinkage::new(linkage, unit, loads)?;
-    let before = TorqueOver::of(&loaded, range, still)?;
-    let own = torques(&loaded, range, STEPS, still)?;
+    let before = TorqueOver::of(&loaded, range)?;
+    let own = torques(&loaded, range, STEPS)?;
     if before.peak.value == 0.0 {
         return Err(BalanceError::NothingToBalance);
     }
@@ -97,7 +96,7 @@ pub fn balance_by_spring(
     let mut balanced = loads.clone();
     balanced.springs.push(spring.clone());
     let with = LoadedLinkage::new(linkage, unit, &balanced)?;
-    let after = TorqueOver::of(&with, range, still)?;
+    let after = TorqueOver::of(&with, range)?;
     let span = columns.span(linkage, unit, request)?;
     let span = if columns.torsion { span.map(|turn| turn - free) } else { span };
     let rest = if columns.torsion { 0.0 } else { free };
@@ -157,7 +156,7 @@ impl Columns {
                 let one = |free: f64| -> Result<Vec<f64>, BalanceError> {
                     let springs = vec![spring_of(&request.ends, 1.0, free)];
                     let loaded = LoadedLinkage::new(linkage, unit, &Loads { springs, ..Loads::default() })?;
-                    torques(&loaded, request.range, STEPS, CrankMotion::steady(0.0))
+                    torques(&loaded, request.range, STEPS)
                 };
                 let by_rate = one(0.0)?;
                 // The free length of one metre, less that of none.

@@ -8,7 +8,6 @@
 use super::{At, Motion, Place, Row, RowKind, Turn, assembly_of};
 use crate::mechanism::AssemblyMode;
 use crate::mechanism::four_bar::mobility::linkage_type;
-use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::mechanism::loads::{LoadedLinkage, Scratch};
 use crate::mechanism::{CrankLinkage, LinkageType};
 use crate::task::forms::design_space::{SHAPE, Shape};
@@ -53,19 +52,19 @@ struct Peak {
 struct Loaded {
     linkage: LoadedLinkage,
     scratch: Scratch,
-    input: CrankMotion,
 }
 
 impl Loaded {
     fn of(shape: &Shape, loads: &LoadsSpec, assembly: AssemblyMode) -> Option<Loaded> {
         let linkage = shape.linkage(assembly).ok()?;
         let linkage = loads.on(&CrankLinkage::from(linkage)).ok()?;
-        Some(Loaded { scratch: linkage.scratch(), linkage, input: loads.crank_motion() })
+        Some(Loaded { scratch: linkage.scratch(), linkage })
     }
 
     /// Returns the size of the torque at a crank angle; `None` where the loop does not close.
     fn at(&mut self, angle: f64) -> Option<f64> {
-        self.linkage.torque(angle, self.input, &mut self.scratch).ok().map(f64::abs)
+        let input = self.linkage.drive().motion(angle);
+        self.linkage.torque(angle, input, &mut self.scratch).ok().map(f64::abs)
     }
 
     /// Returns the largest size over samples from an angle on.
