@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! cargo run --release --example nine-point-start-set -- src/numbers/nine_point/start-set.bin [POSES PIVOTS [SEED]]
+//! cargo run --release --example nine-point-start-set -- trace [POSES PIVOTS [SEED]]
 //! ```
 //!
 //! POSES is the number of poses beyond the first place, PIVOTS that of given ground pivots: 0 0 (the default) for nine
@@ -11,7 +12,9 @@
 
 #![expect(clippy::print_stdout, reason = "it says what it found")]
 
+mod conic;
 mod monodromy;
+mod trace;
 
 use linkwright::internals::numbers::arithmetic::complex_lanes::ORDER;
 use linkwright::internals::numbers::arithmetic::streams::{stream, unit};
@@ -21,6 +24,7 @@ use linkwright::internals::numbers::nine_point::start::StartSet;
 use linkwright::internals::numbers::nine_point::target::{Kind, MOST_POSES};
 use monodromy::{FEW, Limits, orbit};
 use std::sync::atomic::AtomicBool;
+use trace::trace;
 
 /// Returns the bytes of a set's file, as `src/numbers/nine_point/start.rs` describes them.
 fn bytes_of(set: &StartSet) -> Vec<u8> {
@@ -45,17 +49,49 @@ fn bytes_of(set: &StartSet) -> Vec<u8> {
 /// The embedded set's.
 const SEED: u64 = 1;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut arguments = std::env::args().skip(1);
-    let path = arguments.next().ok_or("which file shall the start set be written to?")?;
-    let poses: usize = arguments.next().map_or(Ok(0), |word| word.parse())?;
-    let pivots: usize = arguments.next().map_or(Ok(0), |word| word.parse())?;
-    let kind = Kind { poses, pivots };
+/// The largest number of loops of the trace test.
+const LOOPS: u32 = 120;
+
+/// Reads a kind of targets and a seed.
+fn asked(arguments: &mut impl Iterator<Item = String>) -> Result<(Kind, u64), Box<dyn std::error::Error>> {
+    let mut number = |or: u64| arguments.next().map_or(Ok(or), |word| word.parse());
+    let (poses, pivots, seed) = (number(0)? as usize, number(0)? as usize, number(SEED)?);
     if pivots > 2 || poses + pivots > MOST_POSES {
         return Err("at most two given pivots, and four of them and of the poses beyond the first".into());
     }
-    let seed: u64 = arguments.next().map_or(Ok(SEED), |word| word.parse())?;
-    let mut numbers = stream(seed, (poses + 8 * pivots) as u64);
+    Ok((Kind { poses, pivots }, seed))
+}
+
+/// Makes the trace test of an embedded set and prints its figures.
+fn traced(kind: Kind, seed: u64) -> Result<(), Box<dyn std::error::Error>> {
+    let (set, mut numbers) = (StartSet::embedded(kind), stream(seed, 0));
+    let began = std::time::Instant::now();
+    let found = trace(set, &mut || unit(&mut numbers), LOOPS)?;
+    let Kind { poses, pivots } = kind;
+    println!(
+        "{poses} poses beyond the first place, {} points, {pivots} given pivots, seed {seed}",
+        kind.points()
+    );
+    println!("at t = t0: {} classes, {} of {} of the set", found.at_t, found.known, set.solutions.len());
+    println!("at L = 0: {}", found.others);
+    println!(
+        "loops: {}, the last {} without a further point, {} paths lost",
+        found.loops.0, found.loops.1, found.lost
+    );
+    println!("departure from linear: {:.1e}", found.departure);
+    println!("the same without one class: {:.1e} at least", found.without_one);
+    println!("{:.1} s", began.elapsed().as_secs_f64());
+    Ok(())
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let path = arguments.next().ok_or("which file shall the start set be written to?")?;
+    let (kind, seed) = asked(&mut arguments)?;
+    if path == "trace" {
+        return traced(kind, seed);
+    }
+    let mut numbers = stream(seed, (kind.poses + 8 * kind.pivots) as u64);
     let (few, idle) = if kind == Kind::default() { (FEW, 4) } else { (0, 8) };
     let limits = Limits { idle, ..Limits::default() };
     let orbit = orbit(&mut || unit(&mut numbers), (kind, few), &limits, &AtomicBool::new(false));

@@ -53,7 +53,7 @@ pub const FEW: usize = 50;
 const SAME: f64 = 1e-6;
 
 /// Draws a complex number in the ring between the radii 1/2 and 3/2.
-fn ring(uniform: Uniform) -> Complex {
+pub fn ring(uniform: Uniform) -> Complex {
     Complex::from_polar(0.5 + uniform(), std::f64::consts::TAU * uniform())
 }
 
@@ -96,7 +96,7 @@ fn random_answer(uniform: Uniform, kind: Kind) -> (Displacements, Solution) {
 }
 
 /// Draws random displacements of moderate size.
-fn random_displacements(uniform: Uniform, kind: Kind) -> Displacements {
+pub fn random_displacements(uniform: Uniform, kind: Kind) -> Displacements {
     let mut draw = || [(); STEPS].map(|()| ring(uniform));
     Displacements { delta: draw(), starred: draw(), kind }
 }

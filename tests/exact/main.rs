@@ -3,6 +3,8 @@
 mod certificate;
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../../examples/nine-point-start-set/conic.rs"]
+mod conic;
 mod equations;
 mod known;
 mod listing;
@@ -17,4 +19,7 @@ mod problems;
 mod random;
 mod solutions;
 mod start_set;
+#[path = "../../examples/nine-point-start-set/trace.rs"]
+mod trace;
+mod traces;
 mod verdicts;
