@@ -15,7 +15,7 @@ use linkwright::internals::numbers::arithmetic::dispatch::vectorised;
 use linkwright::internals::numbers::arithmetic::lane::LANES;
 use linkwright::internals::numbers::arithmetic::operators;
 use linkwright::internals::numbers::nine_point::equations::{UNKNOWNS, Unknowns, steps};
-use linkwright::internals::numbers::nine_point::target::{Displacements, Kind};
+use linkwright::internals::numbers::nine_point::target::{Closure, Displacements, Kind};
 use linkwright::internals::numbers::nine_point::tracker::{NODES, Parameters, continuation};
 use rayon::prelude::*;
 
@@ -92,18 +92,22 @@ operators! { Dual:
 /// Evaluates the coordinates q: functions of a solution that the other solutions of its class share, two and their starred
 /// twins.
 ///
-/// With cognates: the sum of the three foci, and that of the products of the two pins at each. Without: x + y and a + b.
+/// Of four-bars with cognates: the sum of the three foci, and that of the products of the two pins at each. Of others: x + y and
+/// a + b. Of slider-cranks, whose cognates exchange x and a - x: a and x (x - a). Of inverted slider-cranks: x and a.
 #[inline(always)]
 fn coordinates(kind: Kind, z: &Unknowns, along: [&Unknowns; 2]) -> [Dual; COORDINATES] {
     let dual = |i: usize| Dual { value: z[i], along: [along[0][i], along[1][i]] };
     let twins: [[Dual; 2]; 2] = std::array::from_fn(|twin| {
         let [x, u, y, v] = [0, 1, 4, 5].map(|i| dual(i + 2 * twin));
         let (a, b) = (x - u, y - v);
-        if kind.poses == 0 && kind.pivots < 2 {
-            let (p, c) = (u * y / (x - y), (b * x - a * y) / (x - y));
-            [a + b + c, p * (c - p) - x * u - y * v]
-        } else {
-            [x + y, a + b]
+        match kind.closure {
+            Closure::FourBar if kind.poses == 0 && kind.pivots < 2 => {
+                let (p, c) = (u * y / (x - y), (b * x - a * y) / (x - y));
+                [a + b + c, p * (c - p) - x * u - y * v]
+            }
+            Closure::FourBar => [x + y, a + b],
+            Closure::SliderCrank => [a, x * u],
+            Closure::InvertedSliderCrank => [x, a],
         }
     });
     [twins[0][0], twins[0][1], twins[1][0], twins[1][1]]

@@ -21,8 +21,8 @@ use linkwright::internals::numbers::arithmetic::streams::{stream, unit};
 use linkwright::internals::numbers::nine_point::classes::first_of_class;
 use linkwright::internals::numbers::nine_point::equations::unknowns;
 use linkwright::internals::numbers::nine_point::start::StartSet;
-use linkwright::internals::numbers::nine_point::target::{Kind, MOST_POSES};
-use monodromy::{FEW, Limits, orbit};
+use linkwright::internals::numbers::nine_point::target::{Closure, Kind, MOST_POSES};
+use monodromy::{Limits, index, limits_of, orbit};
 use std::sync::atomic::AtomicBool;
 use trace::trace;
 
@@ -30,7 +30,11 @@ use trace::trace;
 fn bytes_of(set: &StartSet) -> Vec<u8> {
     let mut bytes = b"LWNP".to_vec();
     let kind = set.displacements.kind;
-    for word in [1, set.solutions.len() as u32, (kind.poses | kind.pivots << 16) as u32] {
+    for word in [
+        1,
+        set.solutions.len() as u32,
+        (kind.poses | kind.pivots << 16 | (kind.closure as usize) << 24) as u32,
+    ] {
         bytes.extend(word.to_le_bytes());
     }
     for z in set.displacements.delta.iter().chain(&set.displacements.starred) {
@@ -54,12 +58,17 @@ const LOOPS: u32 = 120;
 
 /// Reads a kind of targets and a seed.
 fn asked(arguments: &mut impl Iterator<Item = String>) -> Result<(Kind, u64), Box<dyn std::error::Error>> {
+    let first = arguments.next().unwrap_or_else(|| "0".into());
     let mut number = |or: u64| arguments.next().map_or(Ok(or), |word| word.parse());
-    let (poses, pivots, seed) = (number(0)? as usize, number(0)? as usize, number(SEED)?);
-    if pivots > 2 || poses + pivots > MOST_POSES {
+    let kind = match first.as_str() {
+        "slider-crank" => Kind::of_points(Closure::SliderCrank),
+        "inverted-slider-crank" => Kind::of_points(Closure::InvertedSliderCrank),
+        poses => Kind::new(poses.parse()?, number(0)? as usize),
+    };
+    if kind.pivots > 2 || kind.poses + kind.pivots > MOST_POSES {
         return Err("at most two given pivots, and four of them and of the poses beyond the first".into());
     }
-    Ok((Kind { poses, pivots }, seed))
+    Ok((kind, number(SEED)?))
 }
 
 /// Makes the trace test of an embedded set and prints its figures.
@@ -67,9 +76,9 @@ fn traced(kind: Kind, seed: u64) -> Result<(), Box<dyn std::error::Error>> {
     let (set, mut numbers) = (StartSet::embedded(kind), stream(seed, 0));
     let began = std::time::Instant::now();
     let found = trace(set, &mut || unit(&mut numbers), LOOPS)?;
-    let Kind { poses, pivots } = kind;
+    let Kind { poses, pivots, closure } = kind;
     println!(
-        "{poses} poses beyond the first place, {} points, {pivots} given pivots, seed {seed}",
+        "{closure:?}, {poses} poses beyond the first place, {} points, {pivots} given pivots, seed {seed}",
         kind.points()
     );
     println!("at t = t0: {} classes, {} of {} of the set", found.at_t, found.known, set.solutions.len());
@@ -91,8 +100,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if path == "trace" {
         return traced(kind, seed);
     }
-    let mut numbers = stream(seed, (kind.poses + 8 * kind.pivots) as u64);
-    let (few, idle) = if kind == Kind::default() { (FEW, 4) } else { (0, 8) };
+    let mut numbers = stream(seed, index(kind));
+    let (few, idle) = limits_of(kind);
     let limits = Limits { idle, ..Limits::default() };
     let orbit = orbit(&mut || unit(&mut numbers), (kind, few), &limits, &AtomicBool::new(false));
     let found = orbit.solutions.len();
@@ -107,7 +116,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let set = StartSet { displacements: orbit.displacements, solutions: orbit.solutions };
     let bytes = bytes_of(&set);
     let back = StartSet::parse(&bytes)?;
-    let firsts = first_of_class(&[set.solutions, back.solutions].concat(), 1e-7);
+    let firsts = first_of_class(&[set.solutions, back.solutions].concat(), kind.closure, 1e-7);
     if (0..classes).any(|at| firsts[at] != at || firsts[classes + at] != at) {
         return Err("the set does not survive single precision: try another seed".into());
     }

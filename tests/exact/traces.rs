@@ -6,7 +6,7 @@ use linkwright::internals::numbers::nine_point::start::StartSet;
 use linkwright::internals::numbers::nine_point::target::Kind;
 
 /// Kinds that take a second or two, each with the number of points of its other section.
-const SMALL: [(Kind, usize); 2] = [(Kind { poses: 4, pivots: 0 }, 126), (Kind { poses: 1, pivots: 2 }, 94)];
+const SMALL: [(Kind, usize); 2] = [(Kind::new(4, 0), 126), (Kind::new(1, 2), 94)];
 
 #[test]
 fn sums_over_all_solutions_are_linear_and_without_any_one_they_are_not() {
