@@ -106,6 +106,8 @@ fn functions(kind: Kind, point: &Point) -> [Complex; FUNCTIONS] {
 const LINEAR: f64 = 1e-11;
 /// The size of s in the sections that are compared: the farther apart they are, the more a sum departs from linear.
 const FAR: f64 = 4.0;
+/// The number of other ways that are tried between two sections.
+const DETOURS: usize = 4;
 /// The decimal logarithm of the largest size of the numbers of a loop's section, and of the inverse of the smallest.
 const SPREAD: f64 = 1.0;
 
@@ -126,8 +128,16 @@ pub fn trace(set: &StartSet, uniform: Uniform, most: u32) -> Result<Traced, Fail
     let arrived = |starts: &[Point], way: (&Section, &Section)| -> Vec<Point> {
         track_points(starts, &line, way).into_iter().flatten().collect()
     };
-    let over = |points: &[Point], to: &Section| -> Result<Vec<Point>, Failed> {
-        let ends = distinct(kind, arrived(points, (&home, to)));
+    let over = |points: &[Point], to: &Section, uniform: Uniform| -> Result<Vec<Point>, Failed> {
+        let mut ends = distinct(kind, arrived(points, (&home, to)));
+        // Another way for all, if one of them meets an obstacle: the sums do not depend on it.
+        for _ in 0..DETOURS {
+            if ends.len() == points.len() {
+                break;
+            }
+            let aside = section(ring(uniform) * FAR);
+            ends = distinct(kind, arrived(&arrived(points, (&home, &aside)), (&aside, to)));
+        }
         if ends.len() < points.len() { Err(Failed::Lost(points.len() - ends.len())) } else { Ok(ends) }
     };
     let mut points = distinct(kind, arrived(&starts, (&section(Complex::ZERO), &home)));
@@ -151,12 +161,12 @@ pub fn trace(set: &StartSet, uniform: Uniform, most: u32) -> Result<Traced, Fail
             // Of each section and point, in the order of the points at home.
             let mut values: Vec<Vec<[Complex; FUNCTIONS]>> = Vec::with_capacity(SECTIONS);
             for to in &sections {
-                values.push(over(&points, to)?.iter().map(|point| functions(kind, point)).collect());
+                values.push(over(&points, to, uniform)?.iter().map(|point| functions(kind, point)).collect());
             }
             (departure, without_one) = departures(&sections, &values);
         }
     }
-    let mut at_zero = over(&points, &section(Complex::ZERO))?;
+    let mut at_zero = over(&points, &section(Complex::ZERO), uniform)?;
     // At t = t0 to rounding, where the other points have L = 0.
     let is_at_t = |point: &Point| point.t.norm() < 1e-9;
     let others = at_zero.iter().filter(|point| !is_at_t(point)).count();

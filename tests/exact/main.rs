@@ -17,6 +17,7 @@ mod poses;
 mod problems;
 #[path = "../common/random.rs"]
 mod random;
+mod sliders;
 mod solutions;
 mod start_set;
 #[path = "../../examples/nine-point-start-set/trace.rs"]

@@ -2,9 +2,10 @@
 
 use linkwright::internals::numbers::arithmetic::Complex;
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
-use linkwright::internals::numbers::nine_point::target::{Closure, STEPS};
+use linkwright::internals::numbers::nine_point::target::{Closure, Kind, STEPS};
 use linkwright::internals::numbers::nine_point::{
-    Class, Completeness, Options, Reality, Solution, Solved, Target, certify_all, not_proved_distinct, refine, solve,
+    Class, Completeness, Options, Reality, Solution, Solved, Target, certify_all, not_proved_distinct,
+    refine, solve,
 };
 use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
@@ -181,8 +182,7 @@ fn passes(target: &Target, closure: Closure, class: &Class) {
 }
 
 fn all_are_found(closure: Closure, count: u64) {
-    let classes = Target::with_slider(std::array::from_fn(|j| Complex::new(j as f64, (j * j) as f64)), closure)
-        .map_or(0, |target| target.displacements.kind.classes());
+    let classes = Kind::of_points(closure).classes();
     let (mut real, mut proved) = (0, 0);
     for index in 0..count {
         let (target, generating) = instance(closure, index);
@@ -205,7 +205,9 @@ fn all_are_found(closure: Closure, count: u64) {
         let apart = not_proved_distinct(&certificates);
         assert!(apart.is_empty(), "{index}: {apart:?}");
         for (proof, class) in proofs.iter().zip(&found.classes) {
-            if let Ok(proof) = proof && proof.reality != Reality::Undecided {
+            if let Ok(proof) = proof
+                && proof.reality != Reality::Undecided
+            {
                 assert_eq!(proof.reality, class.reality, "{index}");
                 proved += 1;
             }

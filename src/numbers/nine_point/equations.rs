@@ -294,3 +294,84 @@ pub fn steps<const R: usize>(
     }
     (answer, smallest)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::start::StartSet;
+    use crate::target::Kind;
+    use linkwright_arithmetic::streams::{Stream, stream, uniform};
+
+    fn number(draws: &mut Stream) -> Complex {
+        Complex::new(uniform(draws, -1.0, 1.0), uniform(draws, -1.0, 1.0))
+    }
+
+    /// Returns the largest residual, relative to the size of its leg's equation.
+    fn off(of: &Solution, at: &Displacements) -> f64 {
+        let pivots = [of.pins, of.grounds, of.pins_starred, of.grounds_starred];
+        let turns = of.rotations.iter().map(|t| t.norm().max(t.inv().norm())).fold(1.0, f64::max);
+        let all = residuals(of, at);
+        let of_leg = |leg: usize| {
+            let size = 1.0 + pivots.iter().map(|pair| pair[leg].norm_sqr()).sum::<f64>();
+            all[leg].iter().map(|f| f.norm() / (size * turns)).fold(0.0, f64::max)
+        };
+        of_leg(0).max(of_leg(1))
+    }
+
+    #[test]
+    fn newtons_step_and_the_tangent_are_those_of_the_residuals() {
+        let h = 1e-5;
+        let mut compared = 0;
+        for kind in Kind::known() {
+            let set = StartSet::embedded(kind);
+            let mut draws = stream(6, kind.classes() as u64);
+            for start in set.solutions.iter().take(20) {
+                let exact = unknowns(start);
+                let mut near = exact;
+                near.iter_mut().for_each(|z| *z += number(&mut draws) * h);
+                let velocity = Displacements {
+                    delta: std::array::from_fn(|_| number(&mut draws)),
+                    starred: std::array::from_fn(|_| number(&mut draws)),
+                    kind,
+                };
+                let (at, moving) =
+                    (set.displacements.map(ComplexLanes::splat), velocity.map(ComplexLanes::splat));
+                let both =
+                    |from: &[Complex; UNKNOWNS]| steps::<2>(&from.map(ComplexLanes::splat), &at, &moving).0;
+                let moved = |from: &[Complex; UNKNOWNS], step: &Unknowns, by: f64| {
+                    solution(&std::array::from_fn(|i| from[i] + step[i].get(0) * by))
+                };
+                let ([newton, _], [_, tangent]) = (both(&near), both(&exact));
+                let size = tangent.iter().map(|z| z.get(0).norm_sqr()).sum::<f64>();
+                // Steps that are short beside the solution's own distance from the next singular one.
+                if size > 1e4 {
+                    continue;
+                }
+                compared += 1;
+                let (before, after) = (
+                    off(&solution(&near), &set.displacements),
+                    off(&moved(&near, &newton, 1.0), &set.displacements),
+                );
+                assert!(after < 1e-3 * before, "{kind:?}: {before:e} {after:e}");
+                let there = set.displacements.zip(&velocity, |d, v| d + v * h);
+                let (still, along) = (off(start, &there), off(&moved(&exact, &tangent, h), &there));
+                assert!(along < 1e-2 * still, "{kind:?}: {still:e} {along:e}");
+            }
+        }
+        assert!(compared > 100, "{compared}");
+    }
+
+    #[test]
+    fn all_images_of_a_solution_solve_the_equations() {
+        for kind in Kind::known() {
+            let set = StartSet::embedded(kind);
+            for solution in set.solutions.iter().take(50) {
+                for image in solution.images(&set.displacements) {
+                    let off = off(&image, &set.displacements);
+                    assert!(off < 1e-9, "{kind:?}: {off:e}");
+                    assert!(image.is_in_class_of(solution, kind.closure, 1e-7), "{kind:?}");
+                }
+            }
+        }
+    }
+}

@@ -289,8 +289,13 @@ mod tests {
             let displacements = ExactDisplacements {
                 delta: std::array::from_fn(|_| number(&mut stream)),
                 starred: std::array::from_fn(|_| number(&mut stream)),
-                // Nine points, and every fourth a mixture with poses and a given pivot.
-                kind: if index % 4 == 3 { Kind::new(2, 1) } else { Kind::default() },
+                // Nine points, a mixture with poses and a given pivot, and eight points with a slider.
+                kind: match index % 4 {
+                    0 => Kind::default(),
+                    1 => Kind::new(2, 1),
+                    2 => Kind::of_points(Closure::SliderCrank),
+                    _ => Kind::of_points(Closure::InvertedSliderCrank),
+                },
             };
             let found = residuals(&displacements, &midpoint);
             for (row, of) in found.iter().enumerate() {
@@ -305,6 +310,25 @@ mod tests {
                         let l = p.times(&t).plus(&delta, 1).plus(&g, -1);
                         let m = starred.plus(&gs, -1).times(&t).plus(&ps, 1);
                         l.times(&m).plus(&t.times(&p.plus(&g, -1).times(&ps.plus(&gs, -1))), -1)
+                    }
+                    // v M* + v* T M, times out: v (p* - p* T + delta* T) + v* T (p T - p + delta).
+                    Equation::Line(places) => {
+                        let [p, g, ps, gs, t] = places.map(at);
+                        let m = p.times(&t).plus(&p, -1).plus(&delta, 1);
+                        let m_s = ps.plus(&ps.times(&t), -1).plus(&starred.times(&t), 1);
+                        p.plus(&g, -1).times(&m_s).plus(&ps.plus(&gs, -1).times(&t).times(&m), 1)
+                    }
+                    // v T N* + v* N: v T (g* T - delta* T - g*) + v* (g - delta - g T).
+                    Equation::CouplerLine(places) => {
+                        let [p, g, ps, gs, t] = places.map(at);
+                        let n = g.plus(&delta, -1).plus(&g.times(&t), -1);
+                        let n_s = gs.times(&t).plus(&starred.times(&t), -1).plus(&gs, -1);
+                        p.plus(&g, -1).times(&t).times(&n_s).plus(&ps.plus(&gs, -1).times(&n), 1)
+                    }
+                    Equation::Normal(places) => {
+                        let [p, g, ps, gs] = places.map(at);
+                        let sum = starred.times(&p.plus(&g, -1)).plus(&delta.times(&ps.plus(&gs, -1)), 1);
+                        sum.plus(&Exact::of(Complex::ONE.into()), -1)
                     }
                     Equation::Turn(place) => at(place).times(&starred).plus(&delta, -1),
                     Equation::Ground(place) => at(place).plus(&delta, -1),
@@ -333,9 +357,22 @@ mod tests {
             };
             let all: [_; 5] = std::array::from_fn(|_| both());
             let (delta, starred) = (both(), both());
-            let discs = derivatives(all.map(|a| a.0), delta.0, starred.0);
-            let members = derivatives(all.map(|a| a.1), delta.1, starred.1);
-            for (disc, member) in discs.into_iter().zip(members) {
+            let (discs, members) = (all.map(|a| a.0), all.map(|a| a.1));
+            let (of_discs, of_members): ([Disc; 5], [DoubleComplex; 5]) = match index % 3 {
+                0 => (
+                    length_derivatives(discs, delta.0, starred.0),
+                    length_derivatives(members, delta.1, starred.1),
+                ),
+                1 => (
+                    line_derivatives(discs, delta.0, starred.0),
+                    line_derivatives(members, delta.1, starred.1),
+                ),
+                _ => (
+                    coupler_line_derivatives(discs, delta.0, starred.0),
+                    coupler_line_derivatives(members, delta.1, starred.1),
+                ),
+            };
+            for (disc, member) in of_discs.into_iter().zip(of_members) {
                 // A member's own rounding is 2^-95 of terms that are below 2^50; the discs' is above 2^-53 of them.
                 let off = Exact::of(member).plus(&Exact::of(disc.mid.into()), -1);
                 assert!(off.is_within(disc.radius.get()), "{index}");
@@ -348,15 +385,24 @@ mod tests {
         let mut stream = stream(3, 0);
         let at: [DoubleComplex; 5] = std::array::from_fn(|_| number(&mut stream));
         let (delta, starred) = (number(&mut stream), number(&mut stream));
-        let slopes = of.1(at, delta, starred);
-        for (i, slope) in slopes.into_iter().enumerate() {
-            // Quadratic in each unknown at most: the central difference is exact but for rounding.
-            let by = DoubleComplex::from(Complex::new(0.25, 0.5));
-            let (mut above, mut below) = (at, at);
-            (above[i], below[i]) = (at[i] + by, at[i] - by);
-            let difference = (value(above, delta, starred) - value(below, delta, starred)) / (by + by);
-            let (off, size) = ((difference - slope).to_complex().norm(), slope.to_complex().norm());
-            assert!(off <= 1e-24 * (1.0 + size), "{i}: {off:e} of {size:e}");
+        type Function = fn([DoubleComplex; 5], DoubleComplex, DoubleComplex) -> DoubleComplex;
+        type Derivatives = fn([DoubleComplex; 5], DoubleComplex, DoubleComplex) -> [DoubleComplex; 5];
+        let all: [(Function, Derivatives); 3] = [
+            (length, length_derivatives),
+            (line, line_derivatives),
+            (coupler_line, coupler_line_derivatives),
+        ];
+        for (function, derivatives) in all {
+            for (i, slope) in derivatives(at, delta, starred).into_iter().enumerate() {
+                // Quadratic in each unknown at most: the central difference is exact but for rounding.
+                let by = DoubleComplex::from(Complex::new(0.25, 0.5));
+                let (mut above, mut below) = (at, at);
+                (above[i], below[i]) = (at[i] + by, at[i] - by);
+                let difference =
+                    (function(above, delta, starred) - function(below, delta, starred)) / (by + by);
+                let (off, size) = ((difference - slope).to_complex().norm(), slope.to_complex().norm());
+                assert!(off <= 1e-24 * (1.0 + size), "{i}: {off:e} of {size:e}");
+            }
         }
     }
 }
