@@ -1,14 +1,17 @@
-//! Makes a start set of exact synthesis from nothing and writes it to a file.
+//! Makes a start set of exact synthesis from nothing and writes it to a file, or makes the trace test of a set.
 //!
 //! ```text
-//! cargo run --release --example nine-point-start-set -- src/numbers/nine_point/start-set.bin [POSES PIVOTS [SEED]]
-//! cargo run --release --example nine-point-start-set -- trace [POSES PIVOTS [SEED]]
+//! cargo run --release --example nine-point-start-set -- src/numbers/nine_point/start-set.bin [KIND [SEED]]
+//! cargo run --release --example nine-point-start-set -- trace [KIND [SEED]]
 //! ```
 //!
-//! POSES is the number of poses beyond the first place, PIVOTS that of given ground pivots: 0 0 (the default) for nine
-//! points, 3 0 for four poses and two points, 0 2 for five points and both pivots. Monodromy from one random complex
-//! four-bar until eight loops in a row find no new class, four of nine points. It refuses to write a set that has not as
-//! many classes as are known ([`Kind::classes`]), if that is known, or does not come back whole from the file.
+//! KIND is POSES PIVOTS, the number of poses beyond the first place and that of given ground pivots: 0 0 (the default) for nine
+//! points, 3 0 for four poses and two points, 0 2 for five points and both pivots; or it is slider-crank or
+//! inverted-slider-crank, for eight points. Monodromy from one random complex linkage until eight loops in a row find no new class,
+//! four of nine points. It refuses to write a set that has not as many classes as are known ([`Kind::classes`]), if that is known,
+//! or does not come back whole from the file.
+//!
+//! `trace` makes no set: it makes the trace test of the one within the program ([`trace`]) and prints its figures.
 
 #![expect(clippy::print_stdout, reason = "it says what it found")]
 

@@ -160,7 +160,7 @@ impl Displacements {
 }
 
 /// n of a real target. Lines along it have no solution v of n* v + n v* = 1: a direction that none is likely to have.
-const NORMAL: Complex = Complex::new(0.270_151_152_934_069_86, 0.420_735_492_403_948_25);
+const NORMAL: Complex = Complex::new(0.27, 0.42);
 
 /// Nine precision points, or points and poses, scaled by a power of two so that the farthest from the first is at a
 /// distance above 1/2 and at most 1.
