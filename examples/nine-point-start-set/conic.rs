@@ -70,6 +70,22 @@ struct Dual {
     along: [ComplexLanes; 2],
 }
 
+impl Dual {
+    #[inline(always)]
+    fn product(self, other: Dual) -> Dual {
+        let of = |k: usize| self.value * other.along[k] + self.along[k] * other.value;
+        Dual { value: self.value * other.value, along: [of(0), of(1)] }
+    }
+
+    #[inline(always)]
+    fn quotient(self, other: Dual) -> Dual {
+        let inverse = other.value.recip();
+        let value = self.value * inverse;
+        let of = |k: usize| (self.along[k] - value * other.along[k]) * inverse;
+        Dual { value, along: [of(0), of(1)] }
+    }
+}
+
 operators! { Dual:
     Add add(x, y) {
         Dual { value: x.value + y.value, along: [x.along[0] + y.along[0], x.along[1] + y.along[1]] }
@@ -77,16 +93,8 @@ operators! { Dual:
     Sub sub(x, y) {
         Dual { value: x.value - y.value, along: [x.along[0] - y.along[0], x.along[1] - y.along[1]] }
     }
-    Mul mul(x, y) {
-        let of = |k: usize| x.value * y.along[k] + x.along[k] * y.value;
-        Dual { value: x.value * y.value, along: [of(0), of(1)] }
-    }
-    Div div(x, y) {
-        let inverse = y.value.recip();
-        let value = x.value * inverse;
-        let of = |k: usize| (x.along[k] - value * y.along[k]) * inverse;
-        Dual { value, along: [of(0), of(1)] }
-    }
+    Mul mul(x, y) { x.product(y) }
+    Div div(x, y) { x.quotient(y) }
 }
 
 /// Evaluates the coordinates q: functions of a solution that the other solutions of its class share, two and their starred

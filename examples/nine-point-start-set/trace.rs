@@ -52,6 +52,8 @@ pub struct Traced {
     pub departure: f64,
     /// The same with one class of the section left out, the least over all classes.
     pub without_one: f64,
+    /// The factor by which leaving out one class raises the departure of some sum, the least over all classes.
+    pub factor: f64,
 }
 
 /// The reason for which the sums could not be compared.
@@ -142,14 +144,14 @@ pub fn trace(set: &StartSet, uniform: Uniform, most: u32) -> Result<Traced, Fail
     };
     let mut points = distinct(kind, arrived(&starts, (&section(Complex::ZERO), &home)));
     let (mut loops, mut unfruitful, mut lost) = (0, 0, starts.len() - points.len());
-    let (mut departure, mut without_one) = (f64::INFINITY, 0.0);
+    let (mut departure, mut without_one, mut factor) = (f64::INFINITY, 0.0, 0.0);
     while departure > LINEAR && loops < most {
         // Of all sizes: some points exchange their places only far from where most do.
         let mut number = || ring(uniform) * 10.0_f64.powf(SPREAD * (2.0 * uniform() - 1.0));
         let there = Section { form: [(); COORDINATES + 1].map(|()| number()), t: number(), s: number() };
-        let factor = ring(uniform);
+        let multiple = ring(uniform);
         // The same section, written in another way: a way to it and back is no way to and fro.
-        let again = Section { form: there.form.map(|c| c * factor), t: there.t, s: there.s * factor };
+        let again = Section { form: there.form.map(|c| c * multiple), t: there.t, s: there.s * multiple };
         let returned = arrived(&arrived(&points, (&home, &there)), (&again, &home));
         lost += points.len() - returned.len();
         let known = points.len();
@@ -163,7 +165,7 @@ pub fn trace(set: &StartSet, uniform: Uniform, most: u32) -> Result<Traced, Fail
             for to in &sections {
                 values.push(over(&points, to, uniform)?.iter().map(|point| functions(kind, point)).collect());
             }
-            (departure, without_one) = departures(&sections, &values);
+            (departure, without_one, factor) = departures(&sections, &values);
         }
     }
     let mut at_zero = over(&points, &section(Complex::ZERO), uniform)?;
@@ -181,14 +183,16 @@ pub fn trace(set: &StartSet, uniform: Uniform, most: u32) -> Result<Traced, Fail
         lost,
         departure,
         without_one,
+        factor,
     })
 }
 
-/// Returns the largest departure of the sums from linear functions of s through the first two sections, and the least that is
-/// left when one point is left out.
-fn departures(sections: &[Section; SECTIONS], values: &[Vec<[Complex; FUNCTIONS]>]) -> (f64, f64) {
+/// Returns the largest departure of the sums from linear functions of s through the first two sections, the least that is left
+/// when one point is left out, and the least factor by which the departure of some sum grows then.
+#[expect(clippy::needless_range_loop, reason = "indices follow the functions and the sections")]
+fn departures(sections: &[Section; SECTIONS], values: &[Vec<[Complex; FUNCTIONS]>]) -> (f64, f64, f64) {
     let mut departure = 0.0_f64;
-    let mut without = vec![0.0_f64; values[0].len()];
+    let (mut without, mut factors) = (vec![0.0_f64; values[0].len()], vec![0.0_f64; values[0].len()]);
     for third in 2..SECTIONS {
         let by = (sections[third].s - sections[0].s) / (sections[1].s - sections[0].s);
         for i in 0..FUNCTIONS {
@@ -202,10 +206,15 @@ fn departures(sections: &[Section; SECTIONS], values: &[Vec<[Complex; FUNCTIONS]
                 (sum, size) = (sum + off, size + magnitude);
             }
             departure = departure.max(sum.norm() / size);
-            for (point, without) in without.iter_mut().enumerate() {
-                *without = without.max((sum - of(point).0).norm() / size);
+            // No sum is known better than to its last digit.
+            let known = sum.norm().max(f64::EPSILON * size);
+            for point in 0..without.len() {
+                let left = (sum - of(point).0).norm();
+                without[point] = without[point].max(left / size);
+                factors[point] = factors[point].max(left / known);
             }
         }
     }
-    (departure, without.into_iter().fold(f64::INFINITY, f64::min))
+    let least = |of: Vec<f64>| of.into_iter().fold(f64::INFINITY, f64::min);
+    (departure, least(without), least(factors))
 }

@@ -17,7 +17,7 @@ fn sums_over_all_solutions_are_linear_and_without_any_one_they_are_not() {
         assert_eq!((found.at_t, found.known, found.others), (kind.classes(), kind.classes(), others));
         assert!(found.lost == 0 && found.loops.1 >= 2 && found.loops.0 < 120, "{:?}", found.loops);
         assert!(found.departure < 1e-11, "{kind:?}: {:e}", found.departure);
-        assert!(found.without_one > 1e-9, "{kind:?}: {:e}", found.without_one);
+        assert!(found.without_one > 1e-7 && found.factor > 1e6, "{kind:?}: {:e}", found.factor);
     }
 }
 
