@@ -114,10 +114,13 @@ impl Linkage {
 }
 
 /// Eight points of a random linkage with the solution that it is, in the frame of the target.
-fn instance(closure: Closure, index: u64) -> (Target, Solution) {
+fn instance(closure: Closure, index: u64, line: Option<f64>) -> (Target, Solution) {
     let mut draws = stream(41 + closure as u64, index);
     loop {
-        let linkage = Linkage::random(&mut draws, closure);
+        let mut linkage = Linkage::random(&mut draws, closure);
+        if let Some(angle) = line {
+            linkage.line = Complex::from_polar(1.0, angle);
+        }
         let mut angles: Vec<f64> = Vec::new();
         for _ in 0..200 {
             let angle = uniform(&mut draws, 0.0, TAU);
@@ -185,7 +188,7 @@ fn all_are_found(closure: Closure, count: u64) {
     let classes = Kind::of_points(closure).classes();
     let (mut real, mut proved) = (0, 0);
     for index in 0..count {
-        let (target, generating) = instance(closure, index);
+        let (target, generating) = instance(closure, index, None);
         let found = solved(&target);
         assert_eq!(found.completeness(), Completeness::Complete, "{index}: {:?}", found.census);
         assert_eq!(found.classes.len(), classes, "{index}");
@@ -227,4 +230,21 @@ fn all_slider_cranks_through_eight_points_are_found_and_the_one_that_drew_them_i
 #[test]
 fn all_inverted_slider_cranks_through_eight_points_are_found_and_the_one_that_drew_them_is_among_them() {
     all_are_found(Closure::InvertedSliderCrank, 20);
+}
+
+/// The direction of lines whose normal has no size: that of the n which targets have.
+#[test]
+fn lines_all_but_along_the_direction_that_is_left_out_are_found_too() {
+    let (target, _) = instance(Closure::SliderCrank, 0, None);
+    let left_out = target.displacements.delta[STEPS - 1].arg();
+    for (index, off) in [1e-2, -1e-4, 1e-6].into_iter().enumerate() {
+        let (target, generating) = instance(Closure::SliderCrank, index as u64, Some(left_out + off));
+        let found = solved(&target);
+        assert_eq!(found.completeness(), Completeness::Complete, "{off:e}: {:?}", found.census);
+        let of_it = |class: &&Class| {
+            class.reality == Reality::Real
+                && class.solution.is_in_class_of(&generating, Closure::SliderCrank, 1e-7)
+        };
+        assert_eq!(found.classes.iter().filter(of_it).count(), 1, "{off:e}");
+    }
 }

@@ -1,9 +1,9 @@
-//! The start sets: one solution of each class at a fixed complex target in general position, of nine points and of each
-//! mixture of points and poses that has a finite number of answers.
+//! The start sets: one solution of each class at a fixed complex target in general position, of nine points, of each
+//! mixture of points and poses that has a finite number of answers, and of eight points where there is a slider.
 //!
 //! The file holds single-precision pivots; the T_j follow from them (each leg gives a quadratic, the legs share one
 //! root; that of a pose is given) and Newton's method restores full precision. `cargo run --release --example
-//! nine-point-start-set -- FILE POSES` makes it anew from nothing, by monodromy.
+//! nine-point-start-set -- FILE KIND` makes it anew from nothing, by monodromy.
 //!
 //! | bytes | content (little endian) |
 //! |---|---|

@@ -288,6 +288,9 @@ impl Target {
 
     /// Creates the target of eight points of a linkage with a slider, in the order in which the path passes them.
     ///
+    /// Lines at 57.265 degrees, the direction of the n of [`Closure`], have no normal of the size asked for: a slider-crank on one, and
+    /// an inverted slider-crank whose coupler line lies so at the first point, is not found.
+    ///
     /// # Errors
     ///
     /// As [`Target::new`].
