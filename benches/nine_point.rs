@@ -20,7 +20,7 @@ mod random;
 
 use linkwright::internals::mechanism::{Complex, FourBar};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, normal, stream, uniform};
-use linkwright::internals::numbers::nine_point::target::Kind;
+use linkwright::internals::numbers::nine_point::target::{Closure, Kind};
 use linkwright::internals::numbers::nine_point::{
     Certificate, Class, Completeness, Options, Reality, Solution, Solved, Target, certify_all,
     not_proved_distinct, resolve_from, solve,
@@ -120,7 +120,7 @@ fn moved() {
         assert!(!moved.fell_back, "frame {frame}");
         let real = |of: &Solved| of.classes[..of.census.real].to_vec();
         for class in real(&whole) {
-            let same = |other: &Class| other.solution.is_in_class_of(&class.solution, 1e-7);
+            let same = |other: &Class| other.solution.is_in_class_of(&class.solution, Closure::FourBar, 1e-7);
             assert!(real(&moved.solved).iter().any(same), "frame {frame}");
         }
         kept.push(moved.kept);
@@ -207,7 +207,7 @@ fn targets(count: u64) {
 /// Solves positions of random linkages on one branch, without noise, some of them with the coupler's angle.
 fn with_poses(count: u64) {
     for others in (1..=4).rev() {
-        let (n, classes) = (9 - others, Kind { poses: others, pivots: 0 }.classes());
+        let (n, classes) = (9 - others, Kind::new(others, 0).classes());
         let (mut complete, mut found, mut real, mut unproved) = (0, 0, 0, 0);
         let (mut times, mut proofs) = (Vec::new(), Vec::new());
         for index in 0..count {

@@ -10,7 +10,7 @@
 use linkwright::internals::numbers::arithmetic::Complex;
 use linkwright::internals::numbers::nine_point::classes::first_of_class;
 use linkwright::internals::numbers::nine_point::correction::correct;
-use linkwright::internals::numbers::nine_point::target::{Displacements, Kind, STEPS, Solution};
+use linkwright::internals::numbers::nine_point::target::{Closure, Displacements, Kind, STEPS, Solution};
 use linkwright::internals::numbers::nine_point::tracker::{Ending, Parameters, Segment, track};
 use std::sync::atomic::AtomicBool;
 
@@ -47,19 +47,32 @@ impl Default for Limits {
     }
 }
 
-/// The number of solutions below which a loop may well find no new one, of nine points.
-pub const FEW: usize = 50;
+/// The index of a kind's stream of random numbers.
+pub fn index(kind: Kind) -> u64 {
+    (kind.poses + 8 * kind.pivots + 64 * kind.closure as usize) as u64
+}
+
+/// Returns the number of solutions below which a loop may well find no new one, and the number of idle loops after which all are
+/// taken to be found.
+pub fn limits_of(kind: Kind) -> (usize, u32) {
+    match kind.closure {
+        Closure::FourBar if kind == Kind::default() => (50, 4),
+        Closure::FourBar => (0, 8),
+        _ => (20, 8),
+    }
+}
+
 /// The tolerance within which two solutions are of one class.
 const SAME: f64 = 1e-6;
 
 /// Draws a complex number in the ring between the radii 1/2 and 3/2.
-fn ring(uniform: Uniform) -> Complex {
+pub fn ring(uniform: Uniform) -> Complex {
     Complex::from_polar(0.5 + uniform(), std::f64::consts::TAU * uniform())
 }
 
 /// Draws a random complex four-bar and computes displacements that it solves.
 ///
-/// With random pivots and T_j each pair (delta_j, delta*_j) solves L_1 R_1 = c_1, L_2 R_2 = c_2, where L_2 = L_1 + d,
+/// The line of a slider is linear in both, so that R = c_1 / L leaves a quadratic too. With random pivots and T_j each pair (delta_j, delta*_j) solves L_1 R_1 = c_1, L_2 R_2 = c_2, where L_2 = L_1 + d,
 /// R_2 = R_1 + d*: a quadratic in L_1.
 fn random_answer(uniform: Uniform, kind: Kind) -> (Displacements, Solution) {
     let [x, y, a, b, x_s, y_s, a_s, b_s] = [(); 8].map(|()| ring(uniform));
@@ -77,13 +90,39 @@ fn random_answer(uniform: Uniform, kind: Kind) -> (Displacements, Solution) {
         let entry = kind.places() + link;
         (displacements.delta[entry], displacements.starred[entry]) = ([a, b][link], [a_s, b_s][link]);
     }
+    let (v, v_s) = (y - b, y_s - b_s);
     for (j, &t) in rotations.iter().enumerate().take(kind.places()) {
-        let (d, d_s) = ((y - x) * t - (b - a), (y_s - x_s) / t - (b_s - a_s));
-        // c_1 + d* L + d R + d d* = c_2 with R = c_1 / L.
-        let (half, product) = ((c_1 + d * d_s - c_2) / (d_s * 2.0), d * c_1 / d_s);
-        let l = -half + (half * half - product).sqrt();
+        let (l, r) = match kind.closure {
+            Closure::FourBar => {
+                let (d, d_s) = ((y - x) * t - (b - a), (y_s - x_s) / t - (b_s - a_s));
+                // c_1 + d* L + d R + d d* = c_2 with R = c_1 / L.
+                let (half, product) = ((c_1 + d * d_s - c_2) / (d_s * 2.0), d * c_1 / d_s);
+                let l = -half + (half * half - product).sqrt();
+                (l, c_1 / l)
+            }
+            closure => {
+                // With delta = L - d and delta* = R - d* the line is e + f delta + g delta* = 0.
+                let (d, d_s) = (x * t - a, x_s / t - a_s);
+                let (e, f, g) = if closure == Closure::SliderCrank {
+                    (v * y_s * (t.inv() - 1.0) + v_s * y * (t - 1.0), v_s, v)
+                } else {
+                    (v * b_s * (t - 1.0) + v_s * b * (t.inv() - 1.0), -v_s / t, -v * t)
+                };
+                // f L^2 + (e - f d - g d*) L + g c_1 = 0.
+                let half = (e - f * d - g * d_s) / (f * 2.0);
+                let l = -half + (half * half - g * c_1 / f).sqrt();
+                (l, c_1 / l)
+            }
+        };
         displacements.delta[j] = l - x * t + a;
-        displacements.starred[j] = c_1 / l - x_s / t + a_s;
+        displacements.starred[j] = r - x_s / t + a_s;
+    }
+    if kind.slides() {
+        // n* v + n v* = 1 and n / n* = T, which the last entry has chosen.
+        let (n, n_s) = (displacements.delta[STEPS - 1], displacements.starred[STEPS - 1]);
+        let size = (n_s * v + n * v_s).inv();
+        displacements.delta[STEPS - 1] = n * size;
+        displacements.starred[STEPS - 1] = n_s * size;
     }
     let solution = Solution {
         pins: [x, y],
@@ -96,7 +135,7 @@ fn random_answer(uniform: Uniform, kind: Kind) -> (Displacements, Solution) {
 }
 
 /// Draws random displacements of moderate size.
-fn random_displacements(uniform: Uniform, kind: Kind) -> Displacements {
+pub fn random_displacements(uniform: Uniform, kind: Kind) -> Displacements {
     let mut draw = || [(); STEPS].map(|()| ring(uniform));
     Displacements { delta: draw(), starred: draw(), kind }
 }
@@ -118,7 +157,13 @@ pub fn orbit(uniform: Uniform, (kind, few): (Kind, usize), limits: &Limits, canc
         let back = Segment { from: away.in_other_units(v, v_s), to: home };
         let there: Vec<Solution> = arrived(&orbit.solutions, &out, cancel)
             .iter()
-            .map(|solution| solution.in_other_units(v, v_s))
+            .map(|solution| {
+                let mut other = solution.in_other_units(v, v_s);
+                if kind.slides() {
+                    other.rotations[STEPS - 1] = back.from.delta[STEPS - 1] / back.from.starred[STEPS - 1];
+                }
+                other
+            })
             .collect();
         let returned = arrived(&there, &back, cancel);
         let known = orbit.solutions.len();
@@ -127,7 +172,7 @@ pub fn orbit(uniform: Uniform, (kind, few): (Kind, usize), limits: &Limits, canc
                 orbit.solutions.push(end.solution);
             }
         }
-        let mut firsts = first_of_class(&orbit.solutions, SAME).into_iter().enumerate();
+        let mut firsts = first_of_class(&orbit.solutions, kind.closure, SAME).into_iter().enumerate();
         orbit.solutions.retain(|_| firsts.next().is_some_and(|(at, first)| at == first));
         orbit.loops += 1;
         // A loop of few solutions that finds no new one is no sign that all are found.

@@ -12,7 +12,7 @@ pub const GENERIC_CLASSES: usize = 1442;
 /// Returns the number of classes of targets in general position, `poses` of them poses and the others points, where
 /// `pivots` of the fixed pivots are given. One pose among points asks for no more than a point does.
 pub fn generic_classes(poses: usize, pivots: usize) -> usize {
-    Kind { poses: poses.saturating_sub(1), pivots }.classes()
+    Kind::new(poses.saturating_sub(1), pivots).classes()
 }
 
 /// The result of an exact solution: counts of all solutions, and the list of the real ones.

@@ -3,6 +3,8 @@
 mod certificate;
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../../examples/nine-point-start-set/conic.rs"]
+mod conic;
 mod equations;
 mod known;
 mod listing;
@@ -15,6 +17,10 @@ mod poses;
 mod problems;
 #[path = "../common/random.rs"]
 mod random;
+mod sliders;
 mod solutions;
 mod start_set;
+#[path = "../../examples/nine-point-start-set/trace.rs"]
+mod trace;
+mod traces;
 mod verdicts;

@@ -7,7 +7,7 @@
 use super::classes::Class;
 use super::conjugation::Reality;
 use super::equations::{LEG, UNKNOWNS, rounded, unknowns};
-use super::target::{Displacements, MOST_POSES, STEPS, Solution};
+use super::target::{Closure, Displacements, MOST_POSES, STEPS, Solution};
 use super::tracker::{Ending, NODES, Parameters, Segment, add, continuation};
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::ORDER;
@@ -150,8 +150,18 @@ fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
         let sigma = -(tau * inverse);
         for leg in 0..2 {
             let [x, u, x_s, u_s] = [0, 1, 2, 3].map(|i| z[LEG * leg + i]);
+            let closure = if leg == 0 { Closure::FourBar } else { kind.closure };
+            if closure == Closure::InvertedSliderCrank {
+                let (b, b_s) = (x - u, x_s - u_s);
+                let (n, n_s) = (b * sigma - delta[j].0 * inverse, b_s * tau - starred[j].0 * t);
+                let (by_b, by_b_s) = (u_s * sigma, u * tau);
+                legs[leg][j] = [by_b, n_s - by_b, by_b_s, n - by_b_s];
+                turns[leg][j] = u * ((b_s - starred[j].0) * t) - u_s * ((b - delta[j].0) * inverse);
+                sides[leg][j] = [-(u * n_s + u_s * n), u_s * inverse * delta[j].1 + u * t * starred[j].1];
+                continue;
+            }
             let (m, m_s) = (x * tau + delta[j].0, x_s * sigma + starred[j].0);
-            let (l, r) = (u + m, u_s + m_s);
+            let (l, r) = if closure == Closure::SliderCrank { (u, u_s) } else { (u + m, u_s + m_s) };
             legs[leg][j] = [tau * r, m_s, sigma * l, m];
             turns[leg][j] = x * t * r - x_s * inverse * l;
             sides[leg][j] = [-(u * m_s + m * r), -(r * delta[j].1 + l * starred[j].1)];
@@ -183,6 +193,14 @@ fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
             (matrix[row][first], matrix[row][first + 1]) = (real(1.0), real(-1.0));
             right[row] = [given.0 - (z[first] - z[first + 1]), given.1];
         }
+    }
+    if kind.slides() {
+        let (row, [v, v_s]) = (ORDER - 1, [LEG + 1, LEG + 3]);
+        (matrix[row][v], matrix[row][v_s]) = (starred[row].0, delta[row].0);
+        right[row] = [
+            real(1.0) - (starred[row].0 * z[v] + delta[row].0 * z[v_s]),
+            -(starred[row].1 * z[v] + delta[row].1 * z[v_s]),
+        ];
     }
     eliminate(&mut matrix, &mut right);
     let answer = |side: usize| {
@@ -274,7 +292,7 @@ mod tests {
             let followed = follow(start, &along, &with, &cancel);
             assert_eq!((followed.ending, end.ending), (Ending::Arrived, Ending::Arrived));
             assert!(followed.end.newton_step < 1e-20, "{:e}", followed.end.newton_step);
-            assert!(followed.end.solution.is_in_class_of(&end.solution, 1e-8));
+            assert!(followed.end.solution.is_in_class_of(&end.solution, Closure::FourBar, 1e-8));
         }
     }
 }

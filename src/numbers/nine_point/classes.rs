@@ -12,12 +12,23 @@
 //! the focus. So the set of the three (focus, product), with their starred twins, identifies a class. The foci alone
 //! do so in general: linkages that are mirror images, of foci on a symmetric target's axis, share them.
 //!
+//! A slider-crank has one cognate: the crank x - a and the arm -x from pin to coupler point change places,
+//!
+//! ```text
+//! x -> a - x    y -> a - x + k (x - a)    v -> k v    v* -> k* v*    k = x / (x - y)    v = y - b
+//! T_j -> (x T_j + delta_j - a) / (x - a)
+//! ```
+//!
+//! starred alike, since delta_j = (x - a)(T'_j - 1) - x (T_j - 1) with T'_j the crank's turn, and the displacement of the sliding
+//! pin, (y - x)(T_j - 1) + (x - a)(T'_j - 1), is multiplied by k. An inverted slider-crank has none, and legs of two kinds do not
+//! change places: such a class has two solutions or one.
+//!
 //! With poses a class has two solutions: a cognate turns the coupler differently; with both
 //! pivots given it has one, with one and no poses two cognates. Foci and
 //! products tell such classes apart as well.
 
 use super::conjugation::Reality;
-use super::target::{Displacements, Solution};
+use super::target::{Closure, Displacements, STEPS, Solution};
 use linkwright_arithmetic::Complex;
 
 /// One class of six solutions.
@@ -73,7 +84,9 @@ impl Solution {
     pub fn images(&self, at: &Displacements) -> [Solution; 6] {
         let cognates = self.cognates(at);
         let all: Vec<Solution> = match at.kind.pivots {
-            0 => cognates.iter().copied().chain(cognates.iter().map(Solution::swapped)).collect(),
+            0 if !at.kind.slides() => {
+                cognates.iter().copied().chain(cognates.iter().map(Solution::swapped)).collect()
+            }
             _ => cognates,
         };
         std::array::from_fn(|i| all[i % all.len()])
@@ -83,6 +96,8 @@ impl Solution {
     /// through points alone all three, with one given pivot the two that have it, else this one.
     pub fn cognates(&self, at: &Displacements) -> Vec<Solution> {
         match (at.kind.poses, at.kind.pivots) {
+            (0, 0) if at.kind.closure == Closure::SliderCrank => vec![*self, self.slider_cognate(at)],
+            _ if at.kind.slides() => vec![*self],
             (0, 0) => {
                 let first = self.cognate(at);
                 vec![*self, first, first.cognate(at)]
@@ -90,6 +105,55 @@ impl Solution {
             (0, 1) => vec![*self, self.cognate(at).swapped()],
             _ => vec![*self],
         }
+    }
+
+    /// Returns the cognate of a slider-crank. Applied twice it gives the solution again; it is not finite if a leg has no length or
+    /// the sliding pin lies on the crank's.
+    fn slider_cognate(&self, at: &Displacements) -> Solution {
+        let mut image = self.turned_slider();
+        let [n, n_s] = [at.delta[STEPS - 1], at.starred[STEPS - 1]];
+        let (v, v_s) = (image.pins[1] - image.grounds[1], image.pins_starred[1] - image.grounds_starred[1]);
+        let size = (n_s * v + n * v_s).inv();
+        image.grounds[1] = image.pins[1] - v * size;
+        image.grounds_starred[1] = image.pins_starred[1] - v_s * size;
+        let (x, a) = (self.pins[0], self.grounds[0]);
+        let length = (x - a).inv();
+        for (j, t) in image.rotations.iter_mut().enumerate().take(at.kind.places()) {
+            *t = (x * *t + at.delta[j] - a) * length;
+        }
+        image
+    }
+
+    /// Returns the pivots of a slider-crank's cognate, v of any size; its rotations are left as they are.
+    fn turned_slider(&self) -> Solution {
+        let image = |[x, y]: [Complex; 2], [a, b]: [Complex; 2]| {
+            let k = x / (x - y);
+            let sliding = a - x + k * (x - a);
+            ([a - x, sliding], [a, sliding - k * (y - b)])
+        };
+        let (pins, grounds) = image(self.pins, self.grounds);
+        let (pins_starred, grounds_starred) = image(self.pins_starred, self.grounds_starred);
+        Solution { pins, grounds, pins_starred, grounds_starred, rotations: self.rotations }
+    }
+
+    /// Returns whether another solution has the same crank, to rounding, and the same sliding pin and line, or, of an inverted
+    /// slider-crank, the same fixed pivot and coupler line.
+    fn has_pivots_of(&self, other: &Solution, closure: Closure, tolerance: f64) -> bool {
+        let numbers = |of: &Solution| {
+            let second = if closure == Closure::SliderCrank {
+                [of.pins[1], of.pins_starred[1]]
+            } else {
+                [of.grounds[1], of.grounds_starred[1]]
+            };
+            [of.pins[0], of.pins_starred[0], of.grounds[0], of.grounds_starred[0], second[0], second[1]]
+        };
+        let normal = |of: &Solution| [of.pins[1] - of.grounds[1], of.pins_starred[1] - of.grounds_starred[1]];
+        let ([v, v_s], [w, w_s]) = (normal(self), normal(other));
+        let crossed = (v * w_s - w * v_s).norm() / ((v * w_s).norm() + (w * v_s).norm());
+        let (one, two) = (numbers(self), numbers(other));
+        (0..4).all(|i| distance(one[i], two[i]) <= tolerance)
+            && (4..6).all(|i| distance(one[i], two[i]) <= tolerance.sqrt())
+            && crossed <= tolerance.sqrt()
     }
 
     /// Returns the conjugate solution, which is one of the same target if that is real.
@@ -104,7 +168,8 @@ impl Solution {
         }
     }
 
-    /// Returns the solution when delta is multiplied by `by` and delta* by `by_starred`.
+    /// Returns the solution when delta is multiplied by `by` and delta* by `by_starred`. The quotient of n and n*, which is none
+    /// of a length, is as before.
     pub fn in_other_units(&self, by: Complex, by_starred: Complex) -> Solution {
         Solution {
             pins: self.pins.map(|z| z * by),
@@ -134,8 +199,14 @@ impl Solution {
     }
 
     /// Returns whether another solution is an image of this one, to rounding: foci within `tolerance` of one another,
-    /// each relative to 1 + its size, and in the same order the products of the pins within the root of it.
-    pub fn is_in_class_of(&self, other: &Solution, tolerance: f64) -> bool {
+    /// each relative to 1 + its size, and in the same order the products of the pins within the root of it. Where there is a
+    /// slider pivots are compared, with those of the cognate too if there is one.
+    pub fn is_in_class_of(&self, other: &Solution, closure: Closure, tolerance: f64) -> bool {
+        if closure != Closure::FourBar {
+            return self.has_pivots_of(other, closure, tolerance)
+                || closure == Closure::SliderCrank
+                    && self.has_pivots_of(&other.turned_slider(), closure, tolerance);
+        }
         let (one, two) = (self.foci(), other.foci());
         let (products, others) = (self.products(), other.products());
         ORDERS.iter().any(|order| {
@@ -174,8 +245,15 @@ fn distance(one: Complex, other: Complex) -> f64 {
 }
 
 /// Computes a number that the images of a solution share and that stays of moderate size when foci go to infinity:
-/// sum 1 / (focus - z0) over the foci and their twins, z0 in general position.
-pub(super) fn key(foci: &[[Complex; 2]; 3]) -> f64 {
+/// sum 1 / (focus - z0) over the foci and their twins, z0 in general position. Where there is a slider the two pins that the crank
+/// pivot has in cognates take the place of foci, or those two points of the linkage that are left without cognates.
+pub(super) fn key(of: &Solution, closure: Closure) -> f64 {
+    let (x, a, b) = ([of.pins[0], of.pins_starred[0]], [of.grounds[0], of.grounds_starred[0]], of.grounds[1]);
+    let foci = match closure {
+        Closure::FourBar => of.foci(),
+        Closure::SliderCrank => [x, [a[0] - x[0], a[1] - x[1]], [Complex::ZERO; 2]],
+        Closure::InvertedSliderCrank => [x, a, [b, of.grounds_starred[1]]],
+    };
     const POLES: [Complex; 2] =
         [Complex::new(0.372_119_4, 1.719_302_7), Complex::new(-1.130_472_1, -0.926_381_2)];
     foci.iter().map(|[a, b]| ((a - POLES[0]).inv() + (b - POLES[1]).inv()).re).sum()
@@ -185,8 +263,8 @@ pub(super) fn key(foci: &[[Complex; 2]; 3]) -> f64 {
 ///
 /// Two are of one class if [`Solution::is_in_class_of`] returns true. The answer does not depend on more than the
 /// solutions and their order.
-pub fn first_of_class(solutions: &[Solution], tolerance: f64) -> Vec<usize> {
-    let keys: Vec<f64> = solutions.iter().map(|solution| key(&solution.foci())).collect();
+pub fn first_of_class(solutions: &[Solution], closure: Closure, tolerance: f64) -> Vec<usize> {
+    let keys: Vec<f64> = solutions.iter().map(|solution| key(solution, closure)).collect();
     let mut order: Vec<usize> = (0..solutions.len()).collect();
     order.sort_by(|&i, &j| keys[i].total_cmp(&keys[j]).then(i.cmp(&j)));
     let mut first: Vec<usize> = (0..solutions.len()).collect();
@@ -194,7 +272,7 @@ pub fn first_of_class(solutions: &[Solution], tolerance: f64) -> Vec<usize> {
         // The key's own error: its derivative by a focus is at most |key|^2, roughly.
         let window = 100.0 * tolerance * (1.0 + keys[i] * keys[i]);
         for &j in order[at + 1..].iter().take_while(|&&j| keys[j] - keys[i] <= window) {
-            if solutions[i].is_in_class_of(&solutions[j], tolerance) {
+            if solutions[i].is_in_class_of(&solutions[j], closure, tolerance) {
                 let (one, other) = (root(&first, i), root(&first, j));
                 first[one.max(other)] = one.min(other);
             }

@@ -17,7 +17,8 @@
 //! (starred alike) take solutions to the others of their class, and sigma commutes with both. So sigma maps a class
 //! to a class, and if to itself, then as one of the six; being an involution, as the identity or as one of the three
 //! exchanges e, e r, e r^2 = r e (of a target with poses there are no cognates, and e alone is left; of seven
-//! points with one pivot given e r, which leaves that pivot in its place; of others with given pivots none). The identity: the six solutions are real. An exchange: a curve that is real, as its
+//! points with one pivot given e r, which leaves that pivot in its place; of others with given pivots none; of a slider-crank its one
+//! cognate, of an inverted slider-crank none). The identity: the six solutions are real. An exchange: a curve that is real, as its
 //! class is, drawn by linkages that are not.
 //!
 //! Let w be the solution, known to lie in an enclosure, and to be the only solution in the polydisc D. If the image
@@ -28,7 +29,7 @@ use super::discs::{Disc, Upper};
 use super::double_discs::DoubleDisc;
 use super::polynomial::{ExactDisplacements, PIVOTS, UNKNOWNS};
 use super::refinement::Midpoint;
-use super::target::Kind;
+use super::target::{Closure, Kind, STEPS};
 use linkwright_arithmetic::Complex;
 
 /// The effect of conjugation on a solution: found to rounding in a [`super::Class`], proved in a
@@ -75,10 +76,13 @@ pub(super) fn reality(
     let mut by_exchanges = Vec::with_capacity(3);
     // Where a pivot is given, the links have places of their own; and cognates turn the coupler differently: where its turns
     // are given they are no solutions.
-    if displacements.kind.pivots == 0 {
+    if displacements.kind.pivots == 0 && !displacements.kind.slides() {
         by_exchanges.push(image_of(Some(enclosure), true));
     }
-    if displacements.kind.poses == 0 && displacements.kind.pivots <= 1 {
+    if displacements.kind.closure == Closure::SliderCrank {
+        by_exchanges.push(image_of(slider_cognate(displacements, &enclosure), false));
+    } else if !displacements.kind.slides() && displacements.kind.poses == 0 && displacements.kind.pivots <= 1
+    {
         by_exchanges.push(image_of(roberts(displacements, &enclosure), true));
     }
     if displacements.kind == Kind::default() {
@@ -138,6 +142,30 @@ fn roberts(displacements: &ExactDisplacements, of: &Enclosure) -> Option<Enclosu
         let per_side = (x - y).inverse()?;
         let pivots = [(x - a) * y * per_side, a - x, (b * x - a * y) * per_side, a];
         image[first..first + 4].copy_from_slice(&pivots);
+    }
+    let (x, a) = (of[0], of[2]);
+    let per_crank = (x - a).inverse()?;
+    for j in 0..displacements.kind.places() {
+        let delta = DoubleDisc::point(displacements.delta[j]);
+        image[PIVOTS + j] = (x * of[PIVOTS + j] + delta - a) * per_crank;
+    }
+    Some(image)
+}
+
+/// Applies the map to a slider-crank's cognate ([`super::classes`]) to the discs; `None` if x = y, x = a or a normal of no size
+/// cannot be excluded.
+fn slider_cognate(displacements: &ExactDisplacements, of: &Enclosure) -> Option<Enclosure> {
+    let mut image = *of;
+    let [n, n_s] = [displacements.delta, displacements.starred].map(|z| DoubleDisc::point(z[STEPS - 1]));
+    let twin = |first: usize| {
+        let [x, y, a, b] = [0, 1, 2, 3].map(|i| of[first + i]);
+        let k = x * (x - y).inverse()?;
+        Some((a - x, a - x + k * (x - a), a, k * (y - b)))
+    };
+    let (one, other) = (twin(0)?, twin(4)?);
+    let size = (n_s * one.3 + n * other.3).inverse()?;
+    for (first, (x, y, a, v)) in [(0, one), (4, other)] {
+        image[first..first + 4].copy_from_slice(&[x, y, a, y - v * size]);
     }
     let (x, a) = (of[0], of[2]);
     let per_crank = (x - a).inverse()?;

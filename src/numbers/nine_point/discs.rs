@@ -156,7 +156,8 @@ operators! { Disc:
         let mid = z.mid + w.mid;
         Disc { mid, radius: z.radius + w.radius + Upper(UNIT) * Upper::magnitude(mid) }
     }
-    Sub sub(z, w) { z + Disc { mid: -w.mid, radius: w.radius } }
+    Sub sub(z, w) { z + -w }
+    Neg neg(z) { Disc { mid: -z.mid, radius: z.radius } }
     Mul mul(z, w) {
         let [one, two] = [z, w].map(|d| Upper::magnitude(d.mid));
         let rounding = Upper(4.0 * UNIT) * one * two + Upper(f64::MIN_POSITIVE);

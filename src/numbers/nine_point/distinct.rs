@@ -16,11 +16,20 @@
 //! x (a - x) + y (b - y) + p (c - p)        and the starred one
 //! ```
 //!
-//! It distinguishes linkages that are mirror images of one another and have their foci on the axis. Two solutions
+//! The two of a slider-crank's class exchange x and a - x, and y and its image z = a - x + x (x - a) / (x - y), so that
+//!
+//! ```text
+//! a        x (a - x)        y + z        y z        and the starred ones
+//! ```
+//!
+//! are the same. A class of inverted slider-cranks is one solution.
+//!
+//! The products distinguish linkages that are mirror images of one another and have their foci on the axis. Two solutions
 //! whose enclosures give disjoint discs for one of these functions belong to different classes.
 
 use super::certificate::Certificate;
 use super::discs::Disc;
+use super::target::Closure;
 
 /// Discs of these eight functions; `None` if x - y may be zero, so that c is not defined.
 type Invariants = Option<[Disc; 8]>;
@@ -33,6 +42,18 @@ fn invariants(certificate: &Certificate) -> Invariants {
         let products = x * (a - x) + y * (b - y) + p * (c - p);
         Some([a + b + c, a * b + (a + b) * c, a * b * c, products])
     };
+    match certificate.closure {
+        Closure::FourBar => {}
+        Closure::SliderCrank => {
+            let of = |x: Disc, y: Disc, a: Disc| -> Option<[Disc; 4]> {
+                let z = a - x + x * (x - a) * (x - y).inverse()?;
+                Some([a, x * (a - x), y + z, y * z])
+            };
+            let ([s1, s2, s3, s4], [t1, t2, t3, t4]) = (of(e[0], e[1], e[2])?, of(e[4], e[5], e[6])?);
+            return Some([s1, s2, s3, s4, t1, t2, t3, t4]);
+        }
+        Closure::InvertedSliderCrank => return e.first_chunk().copied(),
+    }
     let ([s1, s2, s3, s4], [t1, t2, t3, t4]) = (of(e[0], e[1], e[2], e[3])?, of(e[4], e[5], e[6], e[7])?);
     Some([s1, s2, s3, s4, t1, t2, t3, t4])
 }

@@ -13,12 +13,21 @@
 //! whose tau is small, as well as others.
 //!
 //! The T_j of a pose is given: both its rows stay as they are, with p times its own change on the right. A given pivot has
-//! two rows, x - u = a and its twin. The T_j of a
+//! two rows, x - u = a and its twin. The second leg of a slider-crank has the same M and M*, and L = v, R = v* without them:
+//! f = v M* + v* M. That of an inverted slider-crank (y slides in it, b = y - v) is, with N = b sigma - delta / T and
+//! N* = b* tau - delta* T,
+//!
+//! ```text
+//! f = v N* + v* N     df/db = sigma v*     df/db* = tau v     df/dv at fixed b = N*     df/dv* at fixed b* = N
+//! p = v (b* - delta*) T - v* (b - delta) / T     df/ddelta = -v* / T     df/ddelta* = -v T
+//! ```
+//!
+//! and the eighth row of both that of n* v + n v* = 1. The T_j of a
 //! point occurs in two equations, one per leg, so that p_2 (row of leg 1) - p_1 (row of leg 2) is free of it: eight
 //! rows in the eight pivots. dlog T_j follows from the leg with the larger |p|. The rows are scaled to a largest
 //! entry of one before the elimination.
 
-use super::target::{Displacements, MOST_POSES, STEPS, Solution};
+use super::target::{Closure, Displacements, MOST_POSES, STEPS, Solution};
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::{ComplexLanes, ORDER, larger, solve};
 use linkwright_arithmetic::lane::{F64x8, Lane};
@@ -77,6 +86,9 @@ pub fn residuals(of: &Solution, at: &Displacements) -> [[Complex; STEPS]; 2] {
         let (x_s, a_s) = (of.pins_starred[leg], of.grounds_starred[leg]);
         std::array::from_fn(|j| {
             let kind = at.kind;
+            if kind.is_normal(j) && leg == 1 {
+                return at.starred[j] * (x - a) + at.delta[j] * (x_s - a_s) - 1.0;
+            }
             if j >= kind.lengths() {
                 return of.rotations[kind.spare(j)[leg]] * at.starred[j] - at.delta[j];
             }
@@ -84,7 +96,13 @@ pub fn residuals(of: &Solution, at: &Displacements) -> [[Complex; STEPS]; 2] {
                 let pairs = [(of.grounds, at.delta), (of.grounds_starred, at.starred)];
                 return pairs[leg].0[link] - pairs[leg].1[j];
             }
-            let t = of.rotations[j];
+            let (t, v, v_s) = (of.rotations[j], x - a, x_s - a_s);
+            if leg == 1 && kind.closure == Closure::SliderCrank {
+                return v * (x_s * (t.inv() - 1.0) + at.starred[j]) + v_s * (x * (t - 1.0) + at.delta[j]);
+            }
+            if leg == 1 && kind.closure == Closure::InvertedSliderCrank {
+                return v * ((a_s - at.starred[j]) * t - a_s) + v_s * ((a - at.delta[j]) / t - a);
+            }
             (x * t + at.delta[j] - a) * (x_s / t + at.starred[j] - a_s) - (x - a) * (x_s - a_s)
         })
     })
@@ -114,8 +132,22 @@ fn linearised(
     let [x, u, x_s, u_s] = [z[LEG * leg], z[LEG * leg + 1], z[LEG * leg + 2], z[LEG * leg + 3]];
     let tau = z[ORDER + j];
     let sigma = -tau * inverse;
+    let closure = if leg == 0 { Closure::FourBar } else { at.kind.closure };
+    if closure == Closure::InvertedSliderCrank {
+        let t = tau + ComplexLanes::splat(Complex::ONE);
+        let (b, b_s) = (x - u, x_s - u_s);
+        let (n, n_s) = (b * sigma - at.delta[j] * inverse, b_s * tau - at.starred[j] * t);
+        let (by_b, by_b_s) = (u_s * sigma, u * tau);
+        return Linearised {
+            row: [by_b, n_s - by_b, by_b_s, n - by_b_s],
+            p: u * ((b_s - at.starred[j]) * t) - u_s * ((b - at.delta[j]) * inverse),
+            value: u * n_s + u_s * n,
+            by_delta: -(u_s * inverse),
+            by_starred: -(u * t),
+        };
+    }
     let (m, m_s) = (x * tau + at.delta[j], x_s * sigma + at.starred[j]);
-    let (l, r) = (u + m, u_s + m_s);
+    let (l, r) = if closure == Closure::SliderCrank { (u, u_s) } else { (u + m, u_s + m_s) };
     Linearised {
         row: [tau * r, m_s, sigma * l, m],
         p: (x + x * tau) * r - (x_s * inverse) * l,
@@ -225,6 +257,15 @@ pub fn steps<const R: usize>(
             }
         }
     }
+    if kind.slides() {
+        let (row, [v, v_s]) = (ORDER - 1, [LEG + 1, LEG + 3]);
+        let of = |n_s: ComplexLanes, n: ComplexLanes| n_s * z[v] + n * z[v_s];
+        (matrix[row][v], matrix[row][v_s]) = (at.starred[row], at.delta[row]);
+        right[row][0] = ComplexLanes::splat(Complex::ONE) - of(at.starred[row], at.delta[row]);
+        if R == 2 {
+            right[row][R - 1] = -of(velocity.starred[row], velocity.delta[row]);
+        }
+    }
     let smallest = solve(&mut matrix, &mut right);
     let mut answer = [[zero; UNKNOWNS]; R];
     for (r, answer) in answer.iter_mut().enumerate() {
@@ -252,4 +293,85 @@ pub fn steps<const R: usize>(
         }
     }
     (answer, smallest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::start::StartSet;
+    use crate::target::Kind;
+    use linkwright_arithmetic::streams::{Stream, stream, uniform};
+
+    fn number(draws: &mut Stream) -> Complex {
+        Complex::new(uniform(draws, -1.0, 1.0), uniform(draws, -1.0, 1.0))
+    }
+
+    /// Returns the largest residual, relative to the size of its leg's equation.
+    fn off(of: &Solution, at: &Displacements) -> f64 {
+        let pivots = [of.pins, of.grounds, of.pins_starred, of.grounds_starred];
+        let turns = of.rotations.iter().map(|t| t.norm().max(t.inv().norm())).fold(1.0, f64::max);
+        let all = residuals(of, at);
+        let of_leg = |leg: usize| {
+            let size = 1.0 + pivots.iter().map(|pair| pair[leg].norm_sqr()).sum::<f64>();
+            all[leg].iter().map(|f| f.norm() / (size * turns)).fold(0.0, f64::max)
+        };
+        of_leg(0).max(of_leg(1))
+    }
+
+    #[test]
+    fn newtons_step_and_the_tangent_are_those_of_the_residuals() {
+        let h = 1e-5;
+        let mut compared = 0;
+        for kind in Kind::known() {
+            let set = StartSet::embedded(kind);
+            let mut draws = stream(6, kind.classes() as u64);
+            for start in set.solutions.iter().take(20) {
+                let exact = unknowns(start);
+                let mut near = exact;
+                near.iter_mut().for_each(|z| *z += number(&mut draws) * h);
+                let velocity = Displacements {
+                    delta: std::array::from_fn(|_| number(&mut draws)),
+                    starred: std::array::from_fn(|_| number(&mut draws)),
+                    kind,
+                };
+                let (at, moving) =
+                    (set.displacements.map(ComplexLanes::splat), velocity.map(ComplexLanes::splat));
+                let both =
+                    |from: &[Complex; UNKNOWNS]| steps::<2>(&from.map(ComplexLanes::splat), &at, &moving).0;
+                let moved = |from: &[Complex; UNKNOWNS], step: &Unknowns, by: f64| {
+                    solution(&std::array::from_fn(|i| from[i] + step[i].get(0) * by))
+                };
+                let ([newton, _], [_, tangent]) = (both(&near), both(&exact));
+                let size = tangent.iter().map(|z| z.get(0).norm_sqr()).sum::<f64>();
+                // Steps that are short beside the solution's own distance from the next singular one.
+                if size > 1e4 {
+                    continue;
+                }
+                compared += 1;
+                let (before, after) = (
+                    off(&solution(&near), &set.displacements),
+                    off(&moved(&near, &newton, 1.0), &set.displacements),
+                );
+                assert!(after < 1e-3 * before, "{kind:?}: {before:e} {after:e}");
+                let there = set.displacements.zip(&velocity, |d, v| d + v * h);
+                let (still, along) = (off(start, &there), off(&moved(&exact, &tangent, h), &there));
+                assert!(along < 1e-2 * still, "{kind:?}: {still:e} {along:e}");
+            }
+        }
+        assert!(compared > 100, "{compared}");
+    }
+
+    #[test]
+    fn all_images_of_a_solution_solve_the_equations() {
+        for kind in Kind::known() {
+            let set = StartSet::embedded(kind);
+            for solution in set.solutions.iter().take(50) {
+                for image in solution.images(&set.displacements) {
+                    let off = off(&image, &set.displacements);
+                    assert!(off < 1e-9, "{kind:?}: {off:e}");
+                    assert!(image.is_in_class_of(solution, kind.closure, 1e-7), "{kind:?}");
+                }
+            }
+        }
+    }
 }

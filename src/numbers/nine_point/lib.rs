@@ -1,4 +1,5 @@
-//! Every four-bar linkage whose coupler point passes exactly through nine given points (Alt's problem).
+//! Every four-bar linkage whose coupler point passes exactly through nine given points (Alt's problem), and every linkage
+//! with a slider that does through eight.
 //!
 //! Points P_0 .. P_8 as complex numbers, delta_j = P_j - P_0. In the frame of P_0 the linkage has, at its first
 //! point, the moving pins x and y and their ground pivots a and b; the coupler has turned by T_j = e^{i theta_j} when
@@ -14,6 +15,11 @@
 //!
 //! The same equations serve targets of p poses beyond the first and q given ground pivots, with 8 - 2 p - 2 q points
 //! ([`target::Kind`]): the T_j of a pose and a given pivot are no unknowns, and have equations of their own in their place.
+//!
+//! With a slider in place of the second link eight points determine the linkage: the pin y of a slider-crank runs on a fixed
+//! line, the pivot b of an inverted slider-crank on a line of the coupler ([`target::Closure`]). Seven equations of the second link
+//! are others then, and of the two that the eighth place had one scales the normal of the line and one is idle. Generic
+//! points have 558 slider-cranks, 279 pairs of cognates, and 2220 inverted ones, which have no cognates.
 //!
 //! [`refinement`] brings a solution to the last digit, [`certificate`] proves that it exists and is the only one
 //! near, [`conjugation`] that it is real, [`distinct`] that two are of different classes. They are built on
@@ -68,4 +74,4 @@ pub use live::{Moved, resolve_from};
 pub use refinement::{Refined, refine};
 pub use settle::Options;
 pub use solve::{Census, Completeness, Solved, solve};
-pub use target::{Displacements, Solution, Target, TargetError};
+pub use target::{Closure, Displacements, Solution, Target, TargetError};

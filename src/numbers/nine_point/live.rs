@@ -15,7 +15,7 @@ use super::certificate::certify;
 use super::classes::{Class, first_of_class};
 use super::settle::{Fate, Fates, Options, SAME, firsts, isolated, settle};
 use super::solve::{Solved, judged, solve};
-use super::target::{Displacements, STEPS, Solution, Target};
+use super::target::{Closure, Displacements, STEPS, Solution, Target};
 use super::tracker::{Parameters, Segment};
 use linkwright_arithmetic::Complex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -49,7 +49,7 @@ pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cance
     for track in [by_halves, one_by_one] {
         let ends = track(&starts, &legs);
         let classes: Vec<Solution> = isolated(&ends.fates).map(|(_, class)| class.solution).collect();
-        let first = firsts(&classes, |s| certify(target, s));
+        let first = firsts(&classes, to.kind.closure, |s| certify(target, s));
         kept = first.iter().enumerate().filter(|(at, first)| at == *first).count();
         let cancelled = cancel.load(Ordering::Relaxed);
         if kept == previous.classes.len() && kept == previous.census.tracked || cancelled {
@@ -89,7 +89,7 @@ impl Legs<'_> {
 /// end of another path, as that of two classes that have become real, the other class of the pair is tracked too, until
 /// no two ends are one.
 fn by_halves(starts: &[Solution], legs: &Legs<'_>) -> Fates {
-    let partners = partners(starts);
+    let partners = partners(starts, legs.legs[0].from.kind.closure);
     let mut is_tracked = vec![false; starts.len()];
     let mut ends = Fates { fates: vec![Fate::Lost; starts.len()], again: 0 };
     let mut open: Vec<usize> = (0..starts.len()).filter(|&path| partners[path] >= path).collect();
@@ -105,7 +105,7 @@ fn by_halves(starts: &[Solution], legs: &Legs<'_>) -> Fates {
         }
         let (paths, found): (Vec<usize>, Vec<Solution>) =
             isolated(&ends.fates).map(|(path, class)| (path, class.solution)).unzip();
-        let first = first_of_class(&found, SAME);
+        let first = first_of_class(&found, legs.legs[1].to.kind.closure, SAME);
         let shared = (0..paths.len()).filter(|&at| first[at] != at);
         let pairs =
             shared.flat_map(|at| [paths[at], paths[first[at]]]).flat_map(|path| [path, partners[path]]);
@@ -129,11 +129,11 @@ fn conjugate(fate: Fate) -> Fate {
 }
 
 /// Returns for each class the index of the class of its conjugate: its own if it is real, or if none is found.
-fn partners(classes: &[Solution]) -> Vec<usize> {
+fn partners(classes: &[Solution], closure: Closure) -> Vec<usize> {
     let n = classes.len();
     let with_conjugates: Vec<Solution> =
         classes.iter().copied().chain(classes.iter().map(Solution::conjugate)).collect();
-    let first = first_of_class(&with_conjugates, SAME);
+    let first = first_of_class(&with_conjugates, closure, SAME);
     let partner = |at: usize| Some(first[n + at]).filter(|&other| other < n);
     (0..n).map(|at| partner(at).filter(|&other| partner(other) == Some(at)).unwrap_or(at)).collect()
 }

@@ -17,10 +17,17 @@
 //! df/dp = T (M - V)   df/dg = T V - M   df/dp* = L - T U   df/dg* = T (U - L)   df/dT = p M + L (delta* - g*) - U V
 //! ```
 //!
+//! The equations of a slider's line ([`Closure`]), multiplied by T, v = p - g:
+//!
+//! ```text
+//! slider-crank            f = v M* + v* T M        M = p T + delta - p           M* = p* + (delta* - p*) T
+//! inverted slider-crank   f = v T N* + v* N        N = g - delta - g T           N* = (g* - delta*) T - g*
+//! ```
+//!
 //! T = 0 is no solution of the original equations; for T != 0 both forms have the same solutions. The polynomial is
 //! the better one to certify: no inverse of a disc, no quotient in double-double, and three products in all.
 
-use super::target::{Displacements, Solution, Target};
+use super::target::{Closure, Displacements, Solution, Target, quotient};
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::double_double::DoubleComplex;
 use std::ops::{Add, Mul, Sub};
@@ -43,9 +50,8 @@ impl From<&Target> for ExactDisplacements {
     fn from(target: &Target) -> Self {
         let factor = target.scale.recip();
         let kind = target.displacements.kind;
-        let delta = std::array::from_fn(|j| match j.checked_sub(kind.lengths()) {
-            Some(pose) if pose < kind.poses => target.half_turns[pose].into(),
-            Some(_) => Complex::ONE.into(),
+        let delta = std::array::from_fn(|j| match quotient(kind, &target.half_turns, j) {
+            Some(numerator) => numerator.into(),
             None => DoubleComplex::difference_of(target.points[j + 1], target.points[0])
                 .times_power_of_two(factor),
         });
@@ -76,6 +82,12 @@ pub fn solution(of: &[Complex; UNKNOWNS]) -> Solution {
 pub enum Equation {
     /// A link keeps its length from the first place to place j: p, g, p*, g*, T_j.
     Length([usize; 5]),
+    /// A pin stays on its fixed line from the first place to place j: p, g, p*, g*, T_j.
+    Line([usize; 5]),
+    /// A ground pivot stays on its line of the coupler: p, g, p*, g*, T_j.
+    CouplerLine([usize; 5]),
+    /// The size of the normal of a slider's line is given: p, g, p*, g*.
+    Normal([usize; 4]),
     /// The rotation of a pose is given, a quotient.
     Turn(usize),
     /// A ground pivot is given.
@@ -90,7 +102,14 @@ pub enum Equation {
 pub fn equation<Z>(of: &Displacements<Z>, link: usize, j: usize) -> Equation {
     let kind = of.kind;
     if j < kind.places() {
-        Equation::Length([link, 2 + link, 4 + link, 6 + link, PIVOTS + j])
+        let places = [link, 2 + link, 4 + link, 6 + link, PIVOTS + j];
+        match kind.closure {
+            Closure::SliderCrank if link == 1 => Equation::Line(places),
+            Closure::InvertedSliderCrank if link == 1 => Equation::CouplerLine(places),
+            _ => Equation::Length(places),
+        }
+    } else if kind.is_normal(j) && link == 1 {
+        Equation::Normal([1, 3, 5, 7])
     } else if j >= kind.lengths() {
         Equation::Turn(PIVOTS + kind.spare(j)[link])
     } else if link == 0 {
@@ -100,16 +119,93 @@ pub fn equation<Z>(of: &Displacements<Z>, link: usize, j: usize) -> Equation {
     }
 }
 
+/// Evaluates the polynomial of an equation; `one` is the number one.
+#[inline(always)]
+pub fn value<R: Ring>(equation: Equation, at: &[R; UNKNOWNS], delta: R, starred: R, one: R) -> R {
+    match equation {
+        Equation::Length(places) => length(places.map(|i| at[i]), delta, starred),
+        Equation::Line(places) => line(places.map(|i| at[i]), delta, starred),
+        Equation::CouplerLine(places) => coupler_line(places.map(|i| at[i]), delta, starred),
+        Equation::Normal(places) => {
+            let [p, g, ps, gs] = places.map(|i| at[i]);
+            (starred * (p - g) + delta * (ps - gs)) - one
+        }
+        Equation::Turn(place) => at[place] * starred - delta,
+        Equation::Ground(place) => at[place] - delta,
+        Equation::GroundStarred(place) => at[place] - starred,
+    }
+}
+
+/// Evaluates the derivatives of the polynomial of an equation, each with the place of its unknown; `one` is the number one.
+#[inline(always)]
+pub fn slopes<R: Ring + std::ops::Neg<Output = R>>(
+    equation: Equation,
+    at: &[R; UNKNOWNS],
+    delta: R,
+    starred: R,
+    one: R,
+) -> Vec<(usize, R)> {
+    let of = |places: [usize; 5], derivatives: fn([R; 5], R, R) -> [R; 5]| {
+        places.into_iter().zip(derivatives(places.map(|i| at[i]), delta, starred)).collect()
+    };
+    match equation {
+        Equation::Length(places) => of(places, length_derivatives),
+        Equation::Line(places) => of(places, line_derivatives),
+        Equation::CouplerLine(places) => of(places, coupler_line_derivatives),
+        Equation::Normal(places) => places.into_iter().zip([starred, -starred, delta, -delta]).collect(),
+        Equation::Turn(place) => vec![(place, starred)],
+        Equation::Ground(place) | Equation::GroundStarred(place) => vec![(place, one)],
+    }
+}
+
+/// Evaluates f of a line: T M* and T M need no inverse.
+#[inline(always)]
+fn line<R: Ring>([p, g, ps, gs, t]: [R; 5], delta: R, starred: R) -> R {
+    let (m, m_s) = (p * t + (delta - p), ps + (starred - ps) * t);
+    (p - g) * m_s + (ps - gs) * (t * m)
+}
+
+/// Evaluates df/dp, df/dg, df/dp*, df/dg*, df/dT of a line.
+#[inline(always)]
+fn line_derivatives<R: Ring + std::ops::Neg<Output = R>>(
+    [p, g, ps, gs, t]: [R; 5],
+    delta: R,
+    starred: R,
+) -> [R; 5] {
+    let (m, m_s) = (p * t + (delta - p), ps + (starred - ps) * t);
+    let (v, v_s) = (p - g, ps - gs);
+    [m_s + v_s * (t * t - t), -m_s, (v - v * t) + t * m, -(t * m), v * (starred - ps) + v_s * (m + t * p)]
+}
+
+/// Evaluates f of a coupler line.
+#[inline(always)]
+fn coupler_line<R: Ring>([p, g, ps, gs, t]: [R; 5], delta: R, starred: R) -> R {
+    let (n, n_s) = ((g - delta) - g * t, (gs - starred) * t - gs);
+    (p - g) * (t * n_s) + (ps - gs) * n
+}
+
+/// Evaluates df/dp, df/dg, df/dp*, df/dg*, df/dT of a coupler line.
+#[inline(always)]
+fn coupler_line_derivatives<R: Ring + std::ops::Neg<Output = R>>(
+    [p, g, ps, gs, t]: [R; 5],
+    delta: R,
+    starred: R,
+) -> [R; 5] {
+    let (n, n_s) = ((g - delta) - g * t, (gs - starred) * t - gs);
+    let (v, v_s) = (p - g, ps - gs);
+    [t * n_s, (v_s - v_s * t) - t * n_s, n, v * (t * t - t) - n, v * (n_s + t * (gs - starred)) - v_s * g]
+}
+
 /// Evaluates f at one link and point.
 #[inline(always)]
-pub fn value<R: Ring>([p, g, ps, gs, t]: [R; 5], delta: R, starred: R) -> R {
+fn length<R: Ring>([p, g, ps, gs, t]: [R; 5], delta: R, starred: R) -> R {
     let (l, m) = (p * t + (delta - g), ps + (starred - gs) * t);
     l * m - t * ((p - g) * (ps - gs))
 }
 
 /// Evaluates df/dp, df/dg, df/dp*, df/dg*, df/dT at one link and point.
 #[inline(always)]
-pub fn derivatives<R: Ring>([p, g, ps, gs, t]: [R; 5], delta: R, starred: R) -> [R; 5] {
+fn length_derivatives<R: Ring>([p, g, ps, gs, t]: [R; 5], delta: R, starred: R) -> [R; 5] {
     let (reach, reach_starred) = (delta - g, starred - gs);
     let (l, m) = (p * t + reach, ps + reach_starred * t);
     let (u, v) = (p - g, ps - gs);
@@ -193,8 +289,13 @@ mod tests {
             let displacements = ExactDisplacements {
                 delta: std::array::from_fn(|_| number(&mut stream)),
                 starred: std::array::from_fn(|_| number(&mut stream)),
-                // Nine points, and every fourth a mixture with poses and a given pivot.
-                kind: if index % 4 == 3 { Kind { poses: 2, pivots: 1 } } else { Kind::default() },
+                // Nine points, a mixture with poses and a given pivot, and eight points with a slider.
+                kind: match index % 4 {
+                    0 => Kind::default(),
+                    1 => Kind::new(2, 1),
+                    2 => Kind::of_points(Closure::SliderCrank),
+                    _ => Kind::of_points(Closure::InvertedSliderCrank),
+                },
             };
             let found = residuals(&displacements, &midpoint);
             for (row, of) in found.iter().enumerate() {
@@ -209,6 +310,25 @@ mod tests {
                         let l = p.times(&t).plus(&delta, 1).plus(&g, -1);
                         let m = starred.plus(&gs, -1).times(&t).plus(&ps, 1);
                         l.times(&m).plus(&t.times(&p.plus(&g, -1).times(&ps.plus(&gs, -1))), -1)
+                    }
+                    // v M* + v* T M, times out: v (p* - p* T + delta* T) + v* T (p T - p + delta).
+                    Equation::Line(places) => {
+                        let [p, g, ps, gs, t] = places.map(at);
+                        let m = p.times(&t).plus(&p, -1).plus(&delta, 1);
+                        let m_s = ps.plus(&ps.times(&t), -1).plus(&starred.times(&t), 1);
+                        p.plus(&g, -1).times(&m_s).plus(&ps.plus(&gs, -1).times(&t).times(&m), 1)
+                    }
+                    // v T N* + v* N: v T (g* T - delta* T - g*) + v* (g - delta - g T).
+                    Equation::CouplerLine(places) => {
+                        let [p, g, ps, gs, t] = places.map(at);
+                        let n = g.plus(&delta, -1).plus(&g.times(&t), -1);
+                        let n_s = gs.times(&t).plus(&starred.times(&t), -1).plus(&gs, -1);
+                        p.plus(&g, -1).times(&t).times(&n_s).plus(&ps.plus(&gs, -1).times(&n), 1)
+                    }
+                    Equation::Normal(places) => {
+                        let [p, g, ps, gs] = places.map(at);
+                        let sum = starred.times(&p.plus(&g, -1)).plus(&delta.times(&ps.plus(&gs, -1)), 1);
+                        sum.plus(&Exact::of(Complex::ONE.into()), -1)
                     }
                     Equation::Turn(place) => at(place).times(&starred).plus(&delta, -1),
                     Equation::Ground(place) => at(place).plus(&delta, -1),
@@ -237,9 +357,22 @@ mod tests {
             };
             let all: [_; 5] = std::array::from_fn(|_| both());
             let (delta, starred) = (both(), both());
-            let discs = derivatives(all.map(|a| a.0), delta.0, starred.0);
-            let members = derivatives(all.map(|a| a.1), delta.1, starred.1);
-            for (disc, member) in discs.into_iter().zip(members) {
+            let (discs, members) = (all.map(|a| a.0), all.map(|a| a.1));
+            let (of_discs, of_members): ([Disc; 5], [DoubleComplex; 5]) = match index % 3 {
+                0 => (
+                    length_derivatives(discs, delta.0, starred.0),
+                    length_derivatives(members, delta.1, starred.1),
+                ),
+                1 => (
+                    line_derivatives(discs, delta.0, starred.0),
+                    line_derivatives(members, delta.1, starred.1),
+                ),
+                _ => (
+                    coupler_line_derivatives(discs, delta.0, starred.0),
+                    coupler_line_derivatives(members, delta.1, starred.1),
+                ),
+            };
+            for (disc, member) in of_discs.into_iter().zip(of_members) {
                 // A member's own rounding is 2^-95 of terms that are below 2^50; the discs' is above 2^-53 of them.
                 let off = Exact::of(member).plus(&Exact::of(disc.mid.into()), -1);
                 assert!(off.is_within(disc.radius.get()), "{index}");
@@ -252,15 +385,24 @@ mod tests {
         let mut stream = stream(3, 0);
         let at: [DoubleComplex; 5] = std::array::from_fn(|_| number(&mut stream));
         let (delta, starred) = (number(&mut stream), number(&mut stream));
-        let slopes = derivatives(at, delta, starred);
-        for (i, slope) in slopes.into_iter().enumerate() {
-            // Quadratic in each unknown at most: the central difference is exact but for rounding.
-            let by = DoubleComplex::from(Complex::new(0.25, 0.5));
-            let (mut above, mut below) = (at, at);
-            (above[i], below[i]) = (at[i] + by, at[i] - by);
-            let difference = (value(above, delta, starred) - value(below, delta, starred)) / (by + by);
-            let (off, size) = ((difference - slope).to_complex().norm(), slope.to_complex().norm());
-            assert!(off <= 1e-24 * (1.0 + size), "{i}: {off:e} of {size:e}");
+        type Function = fn([DoubleComplex; 5], DoubleComplex, DoubleComplex) -> DoubleComplex;
+        type Derivatives = fn([DoubleComplex; 5], DoubleComplex, DoubleComplex) -> [DoubleComplex; 5];
+        let all: [(Function, Derivatives); 3] = [
+            (length, length_derivatives),
+            (line, line_derivatives),
+            (coupler_line, coupler_line_derivatives),
+        ];
+        for (function, derivatives) in all {
+            for (i, slope) in derivatives(at, delta, starred).into_iter().enumerate() {
+                // Quadratic in each unknown at most: the central difference is exact but for rounding.
+                let by = DoubleComplex::from(Complex::new(0.25, 0.5));
+                let (mut above, mut below) = (at, at);
+                (above[i], below[i]) = (at[i] + by, at[i] - by);
+                let difference =
+                    (function(above, delta, starred) - function(below, delta, starred)) / (by + by);
+                let (off, size) = ((difference - slope).to_complex().norm(), slope.to_complex().norm());
+                assert!(off <= 1e-24 * (1.0 + size), "{i}: {off:e} of {size:e}");
+            }
         }
     }
 }

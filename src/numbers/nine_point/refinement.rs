@@ -7,7 +7,7 @@
 
 use super::discs::Upper;
 use super::polynomial::{
-    Equation, ExactDisplacements, PIVOTS, UNKNOWNS, derivatives, equation, solution, unknowns, value,
+    Equation, ExactDisplacements, PIVOTS, UNKNOWNS, equation, slopes, solution, unknowns, value,
 };
 use super::target::{Displacements, STEPS, Solution, power_of_two_above};
 use linkwright_arithmetic::Complex;
@@ -135,13 +135,7 @@ impl Linearisation {
         for (row, link, j) in equations() {
             let (delta, starred) =
                 (displacements.delta[j].to_complex(), displacements.starred[j].to_complex());
-            let slopes: Vec<(usize, Complex)> = match equation(displacements, link, j) {
-                Equation::Length(places) => {
-                    places.into_iter().zip(derivatives(places.map(|i| at[i]), delta, starred)).collect()
-                }
-                Equation::Turn(place) => vec![(place, starred)],
-                Equation::Ground(place) | Equation::GroundStarred(place) => vec![(place, Complex::ONE)],
-            };
+            let slopes = slopes(equation(displacements, link, j), &at, delta, starred, Complex::ONE);
             let largest = slopes.iter().map(|(place, d)| (d * weights[*place]).norm()).fold(0.0, f64::max);
             if !(f64::MIN_POSITIVE * 2.0..=f64::MAX / 4.0).contains(&largest) {
                 return Err(NotRefined::Singular);
@@ -183,12 +177,7 @@ pub(super) fn residuals(displacements: &ExactDisplacements, midpoint: &Midpoint)
     std::array::from_fn(|row| {
         let (link, j) = (row / STEPS, row % STEPS);
         let (delta, starred) = (displacements.delta[j], displacements.starred[j]);
-        match equation(displacements, link, j) {
-            Equation::Length(places) => value(places.map(|i| midpoint[i]), delta, starred),
-            Equation::Turn(place) => midpoint[place] * starred - delta,
-            Equation::Ground(place) => midpoint[place] - delta,
-            Equation::GroundStarred(place) => midpoint[place] - starred,
-        }
+        value(equation(displacements, link, j), midpoint, delta, starred, Complex::ONE.into())
     })
 }
 
@@ -197,7 +186,9 @@ pub(super) fn residuals(displacements: &ExactDisplacements, midpoint: &Midpoint)
 /// With e = [`RELATIVE_ERROR`]: a complex sum errs by at most e times its own magnitude, a complex product by 4 e
 /// times the product of magnitudes. With every difference replaced by the sum of magnitudes, L and M err by at most
 /// (1 + 4 + 1) e, their product by (6 + 6 + 4) e, T (U V) by (1 + 1 + 4 + 4) e, and f by (16 + 1) e of their
-/// majorants, but for terms in e^2; 32 e covers these as well. The equation of a turn is one product and one difference, that of
+/// majorants, but for terms in e^2; 32 e covers these as well. Of a slider's line M and N err by at most 6 e, a product with T
+/// by 10 e, one with v by (10 + 1 + 4) e, and f by 16 e. The equation of a normal is two products of a difference, their sum and
+/// a difference: 7 e. That of a turn is one product and one difference, that of
 /// a given pivot one difference.
 pub(super) fn residual_error(
     displacements: &ExactDisplacements,
@@ -212,6 +203,18 @@ pub(super) fn residual_error(
         Equation::Length(places) => {
             let [p, g, ps, gs, t] = places.map(size);
             (p * t + (delta + g)) * (ps + (starred + gs) * t) + t * ((p + g) * (ps + gs))
+        }
+        Equation::Line(places) => {
+            let [p, g, ps, gs, t] = places.map(size);
+            (p + g) * (ps + (starred + ps) * t) + (ps + gs) * (t * (p * t + (delta + p)))
+        }
+        Equation::CouplerLine(places) => {
+            let [p, g, ps, gs, t] = places.map(size);
+            (p + g) * (t * ((gs + starred) * t + gs)) + (ps + gs) * (g + delta + g * t)
+        }
+        Equation::Normal(places) => {
+            let [p, g, ps, gs] = places.map(size);
+            starred * (p + g) + delta * (ps + gs) + Upper::exactly(1.0)
         }
         Equation::Turn(place) => size(place) * starred + delta,
         Equation::Ground(place) => size(place) + delta,

@@ -8,7 +8,7 @@ use super::conjugation::Reality;
 use super::correction::{Corrected, correct};
 use super::distinct::not_proved_distinct;
 use super::refinement::refine;
-use super::target::{Displacements, Solution};
+use super::target::{Closure, Displacements, Solution};
 use super::tracker::{Ending, Parameters, Segment, Tracked, track};
 use linkwright_arithmetic::Complex;
 use rayon::prelude::*;
@@ -213,7 +213,8 @@ pub(super) fn complete(
     cancel: &AtomicBool,
 ) {
     let solutions = |fates: &[Fate]| isolated(fates).map(|(_, class)| class.solution).collect::<Vec<_>>();
-    let first = firsts(&solutions(&ends.fates), |s| certify_displacements(&along.to, s));
+    let closure = along.to.kind.closure;
+    let first = firsts(&solutions(&ends.fates), closure, |s| certify_displacements(&along.to, s));
     let paths: Vec<usize> = isolated(&ends.fates).map(|(path, _)| path).collect();
     let mut is_first = vec![false; starts.len()];
     for (at, &path) in paths.iter().enumerate() {
@@ -229,7 +230,7 @@ pub(super) fn complete(
         (0..starts.len()).filter(|&path| is_first[path]).map(|path| ends.fates[path]).collect();
     let all: Vec<Fate> =
         known.iter().copied().chain(detour).filter(|f| matches!(f, Fate::Isolated(_))).collect();
-    let first = firsts(&solutions(&all), |s| certify_displacements(&along.to, s));
+    let first = firsts(&solutions(&all), closure, |s| certify_displacements(&along.to, s));
     let new = (known.len()..all.len()).filter(|&at| first[at] == at);
     for (path, at) in spare.into_iter().zip(new) {
         ends.fates[path] = all[at];
@@ -244,9 +245,10 @@ const WIDE: u32 = 8;
 /// one class to rounding are of two if their certificates prove them distinct.
 pub(super) fn firsts(
     solutions: &[Solution],
+    closure: Closure,
     certify: impl Fn(&Solution) -> Result<Certificate, Refused>,
 ) -> Vec<usize> {
-    let near = first_of_class(solutions, SAME);
+    let near = first_of_class(solutions, closure, SAME);
     let mut first = near.clone();
     let apart = |i: usize, j: usize| {
         let proofs = [i, j].map(|k| certify(&solutions[k]));
@@ -269,7 +271,7 @@ fn unsettled(fates: &[Fate], round: u32, at: &Displacements) -> Vec<usize> {
     }
     let (paths, solutions): (Vec<usize>, Vec<_>) =
         isolated(fates).map(|(path, class)| (path, class.solution)).unzip();
-    let first = firsts(&solutions, |s| certify_displacements(at, s));
+    let first = firsts(&solutions, at.kind.closure, |s| certify_displacements(at, s));
     let mut shared = vec![false; paths.len()];
     for (at, &first) in first.iter().enumerate() {
         if first != at {

@@ -6,7 +6,7 @@ use super::classes::{Class, key};
 use super::conjugation::Reality;
 use super::settle::{Fate, Fates, Options, complete, firsts, isolated, settle};
 use super::start::StartSet;
-use super::target::{Solution, Target};
+use super::target::{Closure, Solution, Target};
 use super::tracker::Segment;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -123,7 +123,7 @@ pub fn solve(
 fn proved(target: &Target, end: Fate) -> Fate {
     let Fate::Isolated(class) = end else { return end };
     let proof = |solution: &Solution| certify(target, solution).ok().map(|proof| proof.refined);
-    let cognates = || class.solution.images(&target.displacements)[1..3].iter().find_map(proof);
+    let cognates = || class.solution.cognates(&target.displacements)[1..].iter().find_map(proof);
     match proof(&class.solution).or_else(cognates) {
         Some(solution) => Fate::Isolated(Class { solution, ..class }),
         None => Fate::Singular,
@@ -134,11 +134,15 @@ fn proved(target: &Target, end: Fate) -> Fate {
 pub(super) fn judged(target: &Target, ends: &Fates, cancelled: bool) -> Solved {
     let finite: Vec<Class> = isolated(&ends.fates).map(|(_, class)| *class).collect();
     let solutions: Vec<Solution> = finite.iter().map(|class| class.solution).collect();
-    let first = firsts(&solutions, |s| certify(target, s));
+    let closure = target.displacements.kind.closure;
+    let first = firsts(&solutions, closure, |s| certify(target, s));
     let mut classes: Vec<(f64, Class)> = (0..finite.len())
         .filter(|&at| first[at] == at)
         .map(|at| {
-            (key(&solutions[at].foci()), Class { reality: reality(&finite[at].solution), ..finite[at] })
+            (
+                key(&solutions[at], closure),
+                Class { reality: reality(&finite[at].solution, closure), ..finite[at] },
+            )
         })
         .collect();
     classes.sort_by(|(one, a), (other, b)| a.reality.cmp(&b.reality).then(one.total_cmp(other)));
@@ -165,10 +169,10 @@ pub(super) fn judged(target: &Target, ends: &Fates, cancelled: bool) -> Solved {
 const REAL: f64 = 1e-8;
 
 /// Determines the reality of a solution of a real target, to rounding; [`super::conjugation`] proves it.
-fn reality(of: &Solution) -> Reality {
+fn reality(of: &Solution, closure: Closure) -> Reality {
     if of.imaginary_part() <= REAL {
         Reality::Real
-    } else if of.is_in_class_of(&of.conjugate(), REAL) {
+    } else if of.is_in_class_of(&of.conjugate(), closure, REAL) {
         Reality::RealCurve
     } else {
         Reality::Complex

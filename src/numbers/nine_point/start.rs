@@ -1,9 +1,9 @@
-//! The start sets: one solution of each class at a fixed complex target in general position, of nine points and of each
-//! mixture of points and poses that has a finite number of answers.
+//! The start sets: one solution of each class at a fixed complex target in general position, of nine points, of each
+//! mixture of points and poses that has a finite number of answers, and of eight points where there is a slider.
 //!
 //! The file holds single-precision pivots; the T_j follow from them (each leg gives a quadratic, the legs share one
 //! root; that of a pose is given) and Newton's method restores full precision. `cargo run --release --example
-//! nine-point-start-set -- FILE POSES` makes it anew from nothing, by monodromy.
+//! nine-point-start-set -- FILE KIND` makes it anew from nothing, by monodromy.
 //!
 //! | bytes | content (little endian) |
 //! |---|---|
@@ -11,13 +11,14 @@
 //! | 4..8 | version, u32: 1 |
 //! | 8..12 | number of classes n, u32 |
 //! | 12..14 | number of poses beyond the first, u16 |
-//! | 14..16 | number of given ground pivots, u16 |
+//! | 14 | number of given ground pivots, u8 |
+//! | 15 | closure, u8: 0 four-bar, 1 slider-crank, 2 inverted slider-crank |
 //! | 16..272 | delta_1 .. delta_8, delta*_1 .. delta*_8: real and imaginary part, f64 |
 //! | 272.. | n times x, x - a, x*, x* - a*, y, y - b, y*, y* - b*: real and imaginary part, f32 |
 
 use super::correction::correct;
 use super::equations::{UNKNOWNS, solution};
-use super::target::{Displacements, Kind, MOST_POSES, STEPS, Solution};
+use super::target::{Closure, Displacements, Kind, MOST_POSES, STEPS, Solution};
 use super::tracker::Segment;
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::ORDER;
@@ -41,20 +42,32 @@ struct Known {
 /// C. W. Wampler, "The complete solution of Alt-Burmester synthesis problems for four-bar linkages", ASME J. Mech. Robot. 8
 /// (2016) 041018) over the two labels. Five poses: four dyads in pairs (Burmester). Five points with both pivots: 36
 /// solutions (A. P. Morgan, C. W. Wampler, "Solving a planar four-bar design problem using continuation", ASME J. Mech. Des.
-/// 112 (1990) 544-550). The counts of the other kinds were found by the generator: monodromy from two seeds, eight loops
+/// 112 (1990) 544-550). Eight points of a slider-crank: 558 solutions in pairs of cognates (H. Tari, H.-J. Su, "Complete
+/// solution to the eight-point path generation of slider-crank four-bar linkages", ASME J. Mech. Des. 132 (2010) 081003). The
+/// counts of the other kinds were found by the generator: monodromy from two seeds, eight loops
 /// without a new solution at the end of each. With three poses and a pivot more the links would not be determined.
-const KNOWN: [Known; 11] = [
-    Known { kind: Kind { poses: 0, pivots: 0 }, classes: 1442, bytes: include_bytes!("start-set.bin") },
-    Known { kind: Kind { poses: 1, pivots: 0 }, classes: 1112, bytes: include_bytes!("start-set-1-0.bin") },
-    Known { kind: Kind { poses: 2, pivots: 0 }, classes: 201, bytes: include_bytes!("start-set-2-0.bin") },
-    Known { kind: Kind { poses: 3, pivots: 0 }, classes: 30, bytes: include_bytes!("start-set-3-0.bin") },
-    Known { kind: Kind { poses: 4, pivots: 0 }, classes: 6, bytes: include_bytes!("start-set-4-0.bin") },
-    Known { kind: Kind { poses: 0, pivots: 1 }, classes: 243, bytes: include_bytes!("start-set-0-1.bin") },
-    Known { kind: Kind { poses: 0, pivots: 2 }, classes: 36, bytes: include_bytes!("start-set-0-2.bin") },
-    Known { kind: Kind { poses: 1, pivots: 1 }, classes: 94, bytes: include_bytes!("start-set-1-1.bin") },
-    Known { kind: Kind { poses: 1, pivots: 2 }, classes: 6, bytes: include_bytes!("start-set-1-2.bin") },
-    Known { kind: Kind { poses: 2, pivots: 1 }, classes: 12, bytes: include_bytes!("start-set-2-1.bin") },
-    Known { kind: Kind { poses: 2, pivots: 2 }, classes: 1, bytes: include_bytes!("start-set-2-2.bin") },
+const KNOWN: [Known; 13] = [
+    Known { kind: Kind::new(0, 0), classes: 1442, bytes: include_bytes!("start-set.bin") },
+    Known { kind: Kind::new(1, 0), classes: 1112, bytes: include_bytes!("start-set-1-0.bin") },
+    Known { kind: Kind::new(2, 0), classes: 201, bytes: include_bytes!("start-set-2-0.bin") },
+    Known { kind: Kind::new(3, 0), classes: 30, bytes: include_bytes!("start-set-3-0.bin") },
+    Known { kind: Kind::new(4, 0), classes: 6, bytes: include_bytes!("start-set-4-0.bin") },
+    Known { kind: Kind::new(0, 1), classes: 243, bytes: include_bytes!("start-set-0-1.bin") },
+    Known { kind: Kind::new(0, 2), classes: 36, bytes: include_bytes!("start-set-0-2.bin") },
+    Known { kind: Kind::new(1, 1), classes: 94, bytes: include_bytes!("start-set-1-1.bin") },
+    Known { kind: Kind::new(1, 2), classes: 6, bytes: include_bytes!("start-set-1-2.bin") },
+    Known { kind: Kind::new(2, 1), classes: 12, bytes: include_bytes!("start-set-2-1.bin") },
+    Known { kind: Kind::new(2, 2), classes: 1, bytes: include_bytes!("start-set-2-2.bin") },
+    Known {
+        kind: Kind::of_points(Closure::SliderCrank),
+        classes: 279,
+        bytes: include_bytes!("start-set-slider-crank.bin"),
+    },
+    Known {
+        kind: Kind::of_points(Closure::InvertedSliderCrank),
+        classes: 2220,
+        bytes: include_bytes!("start-set-inverted-slider-crank.bin"),
+    },
 ];
 
 impl Kind {
@@ -143,8 +156,17 @@ impl StartSet {
             return Err(StartSetError::Header);
         }
         let kind = word(12).ok_or(StartSetError::Header)? as usize;
-        let kind = Kind { poses: kind & 0xffff, pivots: kind >> 16 };
-        if kind.pivots > 2 || kind.poses + kind.pivots > MOST_POSES {
+        let closure = match kind >> 24 {
+            0 => Closure::FourBar,
+            1 => Closure::SliderCrank,
+            2 => Closure::InvertedSliderCrank,
+            _ => return Err(StartSetError::Header),
+        };
+        let kind = Kind { poses: kind & 0xffff, pivots: kind >> 16 & 0xff, closure };
+        if kind.slides() && (kind.poses, kind.pivots) != (0, 0)
+            || kind.pivots > 2
+            || kind.poses + kind.pivots > MOST_POSES
+        {
             return Err(StartSetError::Header);
         }
         let classes = word(8).ok_or(StartSetError::Header)? as usize;
@@ -185,7 +207,7 @@ impl StartSet {
 const NEWTON_STEPS: usize = 5;
 
 /// Computes the T_j that pivots imply: x beta T^2 + (x x* + alpha beta - U V) T + alpha x* = 0 with
-/// alpha = delta_j - a, beta = delta*_j - a*, for either leg. Of the roots of both legs the pair that is nearest to
+/// alpha = delta_j - a, beta = delta*_j - a*, for either leg; the leg of a slider has the quadratic of its own line. Of the roots of both legs the pair that is nearest to
 /// being one is taken. The T_j of a pose is given.
 fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
     let mut answer = pivots;
@@ -198,9 +220,13 @@ fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
         let roots: [[Complex; 2]; 2] = std::array::from_fn(|leg| {
             let (x, a) = (pivots.pins[leg], pivots.grounds[leg]);
             let (x_s, a_s) = (pivots.pins_starred[leg], pivots.grounds_starred[leg]);
-            let (alpha, beta) = (at.delta[j] - a, at.starred[j] - a_s);
-            let (square, half, constant) =
-                (x * beta, (x * x_s + alpha * beta - (x - a) * (x_s - a_s)) * 0.5, alpha * x_s);
+            let (delta, starred, v, v_s) = (at.delta[j], at.starred[j], x - a, x_s - a_s);
+            let (alpha, beta) = (delta - a, starred - a_s);
+            let (square, half, constant) = match if leg == 0 { Closure::FourBar } else { at.kind.closure } {
+                Closure::FourBar => (x * beta, (x * x_s + alpha * beta - v * v_s) * 0.5, alpha * x_s),
+                Closure::SliderCrank => (v_s * x, (v * (starred - x_s) + v_s * (delta - x)) * 0.5, v * x_s),
+                Closure::InvertedSliderCrank => (-v * beta, (v * a_s + v_s * a) * -0.5, -v_s * alpha),
+            };
             let root = (half * half - square * constant).sqrt();
             let sum = if (half.conj() * root).re >= 0.0 { -(half + root) } else { root - half };
             [sum / square, constant / sum]

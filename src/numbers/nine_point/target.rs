@@ -8,21 +8,69 @@ pub const STEPS: usize = 8;
 /// The largest number of poses beyond the first.
 pub const MOST_POSES: usize = STEPS / 2;
 
+/// The constraint that closes the loop: that of the coupler's second link (y, b). The first is a crank, (x, a).
+///
+/// With v = y - b and M_j = y (T_j - 1) + delta_j, starred alike (the twin of T_j is 1 / T_j), it is at place j
+///
+/// ```text
+/// four-bar                  v M_j* + v* M_j + M_j M_j* = 0
+/// slider-crank              v M_j* + v* M_j = 0
+/// inverted slider-crank     v N_j* + v* N_j = 0      N_j = (b - delta_j) / T_j - b
+/// ```
+///
+/// The second is the limit of the first for a pivot b at infinity: the pin y runs on a fixed line, of which v is a normal. The
+/// third is the second seen from the coupler: the fixed pivot b slides on a line of it, of which v is a normal at the first
+/// place. Only the direction of v matters, so that it has an equation of its own, n* v + n v* = 1 with given n and n*.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Closure {
+    /// Four-bar linkage: the link keeps its length.
+    #[default]
+    FourBar,
+    /// Slider-crank: a pin of the coupler runs on a fixed line (a PR dyad).
+    SliderCrank,
+    /// Inverted slider-crank: a line of the coupler slides through a fixed pivot (an RP dyad).
+    InvertedSliderCrank,
+}
+
 /// A kind of exact problem: p poses beyond the first and q given ground pivots leave n = 8 - 2 p - 2 q points beyond the
-/// first place.
+/// first place, one less where there is a slider.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Kind {
     /// The number p of poses beyond the first.
     pub poses: usize,
     /// The number q of ground pivots that are given: of neither link, of the first, of both.
     pub pivots: usize,
+    /// The constraint of the second link.
+    pub closure: Closure,
 }
 
 impl Kind {
+    /// Returns the kind of four-bars with so many poses beyond the first and given ground pivots.
+    pub const fn new(poses: usize, pivots: usize) -> Kind {
+        Kind { poses, pivots, closure: Closure::FourBar }
+    }
+
+    /// Returns the kind of linkages with this closure through points alone: nine of a four-bar, else eight.
+    pub const fn of_points(closure: Closure) -> Kind {
+        Kind { poses: 0, pivots: 0, closure }
+    }
+
+    /// Returns whether the second link has a slider.
+    #[inline(always)]
+    pub fn slides(self) -> bool {
+        self.closure != Closure::FourBar
+    }
+
+    /// Returns whether an entry of [`Displacements`] holds n and n* of the equation of v: the last one, where there is a slider.
+    #[inline(always)]
+    pub fn is_normal(self, j: usize) -> bool {
+        self.slides() && j == STEPS - 1
+    }
+
     /// Returns the number of points beyond the first place.
     #[inline(always)]
     pub fn points(self) -> usize {
-        STEPS - 2 * (self.poses + self.pivots)
+        STEPS - 2 * (self.poses + self.pivots) - self.slides() as usize
     }
 
     /// Returns the number of places of the coupler beyond the first: points, then poses.
@@ -44,9 +92,12 @@ impl Kind {
     }
 
     /// Returns, for an entry that holds no place, the two rotations that are no unknowns of their own: the one in the place
-    /// that belongs to the entry, and that in the entry's own place.
+    /// that belongs to the entry, and that in the entry's own place, which for n and n* are one.
     #[inline(always)]
     pub fn spare(self, j: usize) -> [usize; 2] {
+        if self.is_normal(j) {
+            return [j, j];
+        }
         // A turn belongs to its pose, a spare entry to its pivot.
         if j < self.turn(self.poses) {
             [j - self.lengths() + self.points(), j]
@@ -61,7 +112,8 @@ impl Kind {
 ///
 /// The entries hold, in this order: the n points; the p poses; the q given pivots, a and a* relative to P_0; the turn of
 /// each pose from the first as a quotient, T = delta / starred, which in a real target are a number w and its conjugate, so
-/// that |T| = 1 without rounding; and for each given pivot a quotient of no meaning, one over one.
+/// that |T| = 1 without rounding; for each given pivot a quotient of no meaning, one over one; and where there is a slider n
+/// and n* of [`Closure`], in a real target conjugates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Displacements<Z = Complex> {
     /// The displacements delta_j, given pivots, and the numerators of the turns.
@@ -79,19 +131,6 @@ impl<Z: Copy> Displacements<Z> {
         Displacements { delta: self.delta.map(&of), starred: self.starred.map(&of), kind: self.kind }
     }
 
-    /// Returns delta multiplied by `by` and delta* by `by_starred`; turns have no unit.
-    pub fn in_other_units(&self, by: Z, by_starred: Z) -> Self
-    where
-        Z: std::ops::Mul<Output = Z>,
-    {
-        let mut other = *self;
-        for j in 0..self.kind.lengths() {
-            other.delta[j] = self.delta[j] * by;
-            other.starred[j] = self.starred[j] * by_starred;
-        }
-        other
-    }
-
     /// Returns the values of a function of each displacement and the one in its place among `others`.
     pub fn zip<Y>(&self, others: &Self, of: impl Fn(Z, Z) -> Y) -> Displacements<Y> {
         let both = |one: &[Z; STEPS], other: &[Z; STEPS]| std::array::from_fn(|j| of(one[j], other[j]));
@@ -102,6 +141,26 @@ impl<Z: Copy> Displacements<Z> {
         }
     }
 }
+
+impl Displacements {
+    /// Returns delta multiplied by `by` and delta* by `by_starred`; turns have no unit, and n and n* that of a reciprocal length.
+    pub fn in_other_units(&self, by: Complex, by_starred: Complex) -> Self {
+        let mut other = *self;
+        for j in 0..self.kind.lengths() {
+            other.delta[j] = self.delta[j] * by;
+            other.starred[j] = self.starred[j] * by_starred;
+        }
+        if self.kind.slides() {
+            // n* v + n v* stays as it is.
+            other.delta[STEPS - 1] = self.delta[STEPS - 1] / by_starred;
+            other.starred[STEPS - 1] = self.starred[STEPS - 1] / by;
+        }
+        other
+    }
+}
+
+/// n of a real target. Lines along it have no solution v of n* v + n v* = 1: a direction that none is likely to have.
+const NORMAL: Complex = Complex::new(0.27, 0.42);
 
 /// Nine precision points, or points and poses, scaled by a power of two so that the farthest from the first is at a
 /// distance above 1/2 and at most 1.
@@ -201,7 +260,7 @@ impl Target {
         poses: &[(Complex, f64)],
         pivots: &[Complex],
     ) -> Result<Self, TargetError> {
-        let kind = Kind { poses: poses.len(), pivots: pivots.len() };
+        let kind = Kind::new(poses.len(), pivots.len());
         if kind.poses + kind.pivots > MOST_POSES || kind.pivots > 2 || points.len() != kind.points() {
             return Err(TargetError::Number {
                 points: points.len(),
@@ -225,6 +284,24 @@ impl Target {
             return Err(TargetError::OnePivot);
         }
         Self::of(all, half_turns, kind)
+    }
+
+    /// Creates the target of eight points of a linkage with a slider, in the order in which the path passes them.
+    ///
+    /// Lines at 57.265 degrees, the direction of the n of [`Closure`], have no normal of the size asked for: a slider-crank on one, and
+    /// an inverted slider-crank whose coupler line lies so at the first point, is not found.
+    ///
+    /// # Errors
+    ///
+    /// As [`Target::new`].
+    ///
+    /// # Panics
+    /// When the closure is that of a four-bar, which has nine points.
+    pub fn with_slider(points: [Complex; STEPS], closure: Closure) -> Result<Self, TargetError> {
+        assert!(closure != Closure::FourBar, "a four-bar has nine points");
+        let mut all = [Complex::ZERO; STEPS + 1];
+        all[..STEPS].copy_from_slice(&points);
+        Self::of(all, [Complex::ZERO; MOST_POSES], Kind::of_points(closure))
     }
 
     fn of(
@@ -259,13 +336,21 @@ impl Target {
             }
         }
         let scale = power_of_two_above(size);
-        let delta: [Complex; STEPS] = std::array::from_fn(|j| match j.checked_sub(kind.lengths()) {
-            Some(pose) if pose < kind.poses => half_turns[pose],
-            Some(_) => Complex::ONE,
-            None => (points[j + 1] - points[0]) / scale,
+        let delta: [Complex; STEPS] = std::array::from_fn(|j| {
+            quotient(kind, &half_turns, j).unwrap_or((points[j + 1] - points[0]) / scale)
         });
         let displacements = Displacements { delta, starred: delta.map(|d| d.conj()), kind };
         Ok(Target { points, half_turns, scale, displacements })
+    }
+}
+
+/// Returns the numerator of the quotient that an entry of [`Displacements`] of a real target holds, the conjugate of its
+/// denominator; `None` for a length.
+pub(super) fn quotient(kind: Kind, half_turns: &[Complex; MOST_POSES], j: usize) -> Option<Complex> {
+    match j.checked_sub(kind.lengths())? {
+        _ if kind.is_normal(j) => Some(NORMAL),
+        pose if pose < kind.poses => Some(half_turns[pose]),
+        _ => Some(Complex::ONE),
     }
 }
 

@@ -123,7 +123,7 @@ pub struct Tracked {
 }
 
 /// The number of nodes that the predictor remembers.
-pub(super) const NODES: usize = 3;
+pub const NODES: usize = 3;
 
 /// The predictor's data of eight paths, the newest node first.
 struct State {
@@ -142,7 +142,7 @@ struct State {
 
 /// Computes the weights of values and tangents that continue the Hermite polynomial through `nodes` to t.
 #[inline(always)]
-pub(super) fn continuation(t: f64, nodes: &[f64]) -> ([f64; NODES], [f64; NODES]) {
+pub fn continuation(t: f64, nodes: &[f64]) -> ([f64; NODES], [f64; NODES]) {
     let (mut of_value, mut of_tangent) = ([0.0; NODES], [0.0; NODES]);
     for (i, &node) in nodes.iter().enumerate() {
         let (mut lagrange, mut slope) = (1.0, 0.0);

@@ -180,7 +180,7 @@ pub fn precise(problem: &Problem) -> Result<Precise, Refusal> {
     if !poses.is_empty() && 2 * poses.len() + free.len() != wanted {
         return Err(Refusal::Motion { poses: poses.len(), points: free.len(), wanted, pivots: given.len() });
     }
-    let kind = Kind { poses: poses.len().saturating_sub(1), pivots: given.len() };
+    let kind = Kind::new(poses.len().saturating_sub(1), given.len());
     if kind.classes() == 0 {
         return Err(Refusal::Lopsided { poses: poses.len() });
     }
