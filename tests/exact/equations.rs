@@ -4,7 +4,7 @@ use linkwright::internals::mechanism::Complex;
 use linkwright::internals::numbers::arithmetic::complex_lanes::ComplexLanes;
 use linkwright::internals::numbers::nine_point::equations::{UNKNOWNS, residuals, solution, steps, unknowns};
 use linkwright::internals::numbers::nine_point::start::StartSet;
-use linkwright::internals::numbers::nine_point::target::Kind;
+use linkwright::internals::numbers::nine_point::target::{Closure, Kind};
 use linkwright::internals::numbers::nine_point::{Displacements, Solution};
 use nalgebra::{DMatrix, DVector};
 use num_dual::Dual64;
@@ -55,6 +55,10 @@ fn slopes(of: &Solution, at: &Displacements, moved: usize) -> [Complex; UNKNOWNS
             let [pin, arm] = [0, 1].map(|i| number(4 * link + 2 * leg + i));
             return pin.minus(arm).minus(number(UNKNOWNS + 8 * leg + j)).slope();
         }
+        if kind.is_normal(j) && leg == 1 {
+            let (n, n_s) = (number(UNKNOWNS + j), number(UNKNOWNS + 8 + j));
+            return n_s.times(number(5)).plus(n.times(number(7))).slope();
+        }
         if j >= kind.lengths() {
             let t = number(8 + kind.spare(j)[leg]).plus(Dual::new(Complex::ONE, false));
             return t.times(number(UNKNOWNS + 8 + j)).minus(number(UNKNOWNS + j)).slope();
@@ -62,6 +66,18 @@ fn slopes(of: &Solution, at: &Displacements, moved: usize) -> [Complex; UNKNOWNS
         let [x, u, x_s, u_s] = [0, 1, 2, 3].map(|i| number(4 * leg + i));
         let (a, a_s) = (x.minus(u), x_s.minus(u_s));
         let t = number(8 + j).plus(Dual::new(Complex::ONE, false));
+        let (delta, starred, one) =
+            (number(UNKNOWNS + j), number(UNKNOWNS + 8 + j), Dual::new(Complex::ONE, false));
+        if leg == 1 && kind.closure == Closure::SliderCrank {
+            let m = x.times(t.minus(one)).plus(delta);
+            let m_s = x_s.times(t.inverse().minus(one)).plus(starred);
+            return u.times(m_s).plus(u_s.times(m)).slope();
+        }
+        if leg == 1 && kind.closure == Closure::InvertedSliderCrank {
+            let n = a.minus(delta).times(t.inverse()).minus(a);
+            let n_s = a_s.minus(starred).times(t).minus(a_s);
+            return u.times(n_s).plus(u_s.times(n)).slope();
+        }
         let l = x.times(t).plus(number(UNKNOWNS + j)).minus(a);
         let r = x_s.times(t.inverse()).plus(number(UNKNOWNS + 8 + j)).minus(a_s);
         l.times(r).minus(x.minus(a).times(x_s.minus(a_s))).slope()
