@@ -165,6 +165,46 @@ test("a hinge from an empty page: a body, four poses, a box for the pivots, link
   await end();
 });
 
+test("four poses have curves of pins and pivots on the map, marked where linkages have their pins", async () => {
+  const { page, said, end } = await begun("motion/bulldozer-blade.toml");
+  await doing(page, "done");
+  assert.equal(await page.locator(".pin-curve path").count(), 0);
+  await page.locator("#pin-map").check();
+  await page.waitForSelector(".pin-curve path");
+  for (const curve of ["pin-curve", "pivot-curve"]) {
+    const lines = await page.locator(`.${curve} path`).evaluateAll((all) => all.map((one) => one.getAttribute("d")));
+    assert.ok(lines.length > 1 && lines.every((d) => d.startsWith("M") && !d.includes("NaN")), curve);
+  }
+  assert.ok((await page.locator(".pin-curve .good, .pin-curve .fair, .pin-curve .poor").count()) > 0);
+  await doing(page, "done");
+  await shot(page, "four-poses-curves");
+  await page.locator("#pin-map").uncheck();
+  await page.waitForFunction(() => document.querySelector(".pivot-curve").classList.contains("absent"));
+  assert.deepEqual(said, []);
+  await end();
+});
+
+test("all linkages through four poses and two places are counted, and follow a pose", async () => {
+  const { page, said, end } = await begun("motion/four-poses-two-points.toml");
+  await doing(page, "done");
+  const counted = () => page.locator("#nine button").first().textContent();
+  assert.equal(await counted(), "12 all real");
+  await shot(page, "four-poses-all");
+  // Under the hand the linkages are those of the place where it is.
+  const [x, y] = await middle(page, ".handle[data-point='2']");
+  await edited(page, () =>
+    dragged(page, [
+      [x, y],
+      [x + 6, y + 4],
+    ]),
+  );
+  await page.waitForFunction(() => /^\d+ all real$/.test(document.querySelector("#nine button").textContent));
+  await doing(page, "done");
+  assert.match(await status(page), /poses|linkage/);
+  assert.deepEqual(said, []);
+  await end();
+});
+
 test("an example: the map of pins, keys, the table, the order, the errors in words", async () => {
   const { page, said, context, end } = await begun();
   await doing(page, "done");

@@ -10,7 +10,7 @@ use super::sheet::{FULL, HEAD, INSET, Sheet, page};
 use super::words::problem_name;
 use crate::mechanism::{Complex, CrankLinkage, Pose};
 use crate::record::{Candidate, Record};
-use crate::synthesis::pose_curves::{Fineness, PosePlace, pose_curves};
+use crate::synthesis::pose_curves::{PAIRED_ON_A_PAGE, PosePlace, pose_curves};
 use crate::task::Problem;
 
 /// The classes of the marks: the least transmission angle in degrees, the colour, and the words of the legend.
@@ -30,7 +30,7 @@ const DASHES: &str = r#" stroke-dasharray="7 4""#;
 /// than a curve of dyads meets the poses.
 pub fn pose_curves_svg(record: &Record) -> Option<String> {
     let problem = Problem::new(record.problem.resolved.clone()).ok()?;
-    let curves = pose_curves(&problem, Fineness::FULL)?;
+    let curves = pose_curves(&problem, PAIRED_ON_A_PAGE)?;
     let angles = &problem.task().body()?.angles;
     let given = problem.task().points().iter().zip(angles);
     let poses: Vec<Pose> = given.filter_map(|(at, angle)| Some(Pose::new(*at, (*angle)?))).collect();

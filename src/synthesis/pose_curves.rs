@@ -19,21 +19,10 @@ use crate::task::forms::rows::assembly_of;
 use crate::task::forms::torus::Positions;
 use rayon::prelude::*;
 
-/// How finely the curves are sampled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Fineness {
-    /// The places of the curves that are paired with one another.
-    pub paired: usize,
-    /// The places that have the mark of one of these.
-    pub each: usize,
-}
-
-impl Fineness {
-    /// That of a page: some tenths of a second.
-    pub const FULL: Fineness = Fineness { paired: 96, each: 5 };
-    /// That of a drawing that follows the hand.
-    pub const BRIEF: Fineness = Fineness { paired: 40, each: 5 };
-}
+/// The places of the curves that are paired with one another for a page: it takes some tenths of a second.
+pub const PAIRED_ON_A_PAGE: usize = 96;
+/// As [`PAIRED_ON_A_PAGE`], of a drawing that follows the hand.
+pub const PAIRED_LIVE: usize = 40;
 
 /// A place of the curves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,16 +36,17 @@ pub struct PosePlace {
     pub transmission_deg: Option<f64>,
 }
 
-/// Returns the curves of a motion of four poses, in stretches along which they do not break off, one that closes with its first place
-/// at its end too; `None` of another task, and
+/// Returns the curves of a motion of four poses, marked by some `paired` places, in stretches along which they do not break off, one
+/// that closes with its first place at its end too; `None` of another task, and
 /// where more than a curve of dyads meets the poses.
-pub fn pose_curves(problem: &Problem, Fineness { paired, each }: Fineness) -> Option<Vec<Vec<PosePlace>>> {
+pub fn pose_curves(problem: &Problem, paired: usize) -> Option<Vec<Vec<PosePlace>>> {
     let task = problem.task();
     let body = task.body().filter(|_| problem.spec().task.is_motion())?;
     let all_have_angles = body.angles.iter().all(Option::is_some);
     let starts = DyadStarts::new(problem);
     let poses = starts.poses().first_chunk::<4>().filter(|_| all_have_angles && task.len() == 4)?;
-    let strands = four_curve_strands(poses, paired * each);
+    let strands = four_curve_strands(poses);
+    let each = strands.iter().map(|strand| strand.dyads.len()).sum::<usize>().div_ceil(paired).max(1);
     let middle = |places: &[Dyad]| places[places.len() / 2];
     let dyads: Vec<Dyad> = strands.iter().flat_map(|strand| strand.dyads.chunks(each).map(middle)).collect();
     let with_earlier = |i: usize| -> Vec<Option<f64>> {

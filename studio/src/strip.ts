@@ -44,7 +44,7 @@ export function nearness(shown: Shown, task: Task): string {
   if (isExact(shown)) return `through the ${nounOf(task)}s to the last digit`;
   const turned = task.body && shown.angle ? `; angle at most ${figure(shown.angle.max_deg, 2)}°` : "";
   if (!shown.ability) return `rms ${figure(shown.rms, 3)}${length}, at most ${figure(shown.max, 3)}${length}${turned}`;
-  return `exactly through the points${shown.certified_within === undefined ? "" : ", proved"}; ${shown.ability}`;
+  return `exactly through the ${nounOf(task)}s${shown.certified_within === undefined ? "" : ", proved"}; ${shown.ability}`;
 }
 
 /** How large a linkage is as it moves: the diagonal of the box of all of it. */

@@ -8,7 +8,9 @@ use linkwright::internals::numbers::arithmetic::streams::{stream, uniform};
 use linkwright::internals::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, LmOptions, derivative_error, solve,
 };
+use linkwright::internals::report::pose_curves::pose_curves_svg;
 use linkwright::internals::synthesis::multistart::judged;
+use linkwright::internals::synthesis::pose_curves::pose_curves;
 use linkwright::internals::task::Setting;
 use linkwright::internals::task::forms::design_space::Shape;
 use linkwright::internals::task::forms::start::{AS_WRITTEN, Start};
@@ -447,4 +449,28 @@ fn exact_poses_are_met_and_the_others_approached() {
     // A looser ask for one pose alone is at least as near to the others.
     let (one, both) = (of("exact = [0]").error.objective, exact.error.objective);
     assert!(one <= both * 1.01, "{one} {both}");
+}
+
+#[test]
+fn four_poses_have_curves_of_pins_and_pivots_and_five_have_none() {
+    let poses = ["[0, 0, 0]", "[10, 12, 12]", "[22, 20, 31]", "[38, 22, 49]", "[55, 18, 66]"];
+    let of = |n: usize| {
+        solved(
+            parse(&format!("format = 1\n[task.motion]\nposes = [{}]\n{ALONE}", poses[..n].join(", "))).spec,
+        )
+    };
+    let record = of(4);
+    let problem = Problem::new(record.problem.resolved.clone()).expect("a problem");
+    let places = pose_curves(&problem, 60).expect("curves").concat();
+    let best = places.iter().filter_map(|place| place.transmission_deg).fold(0.0, f64::max);
+    let found = record.candidates[0].transmission_deg.worst;
+    // The marks are of samples: the search climbs on from there.
+    assert!(best > 0.8 * found && best <= 90.0, "{best} {found}");
+    // A dyad of the answer lies on the curve.
+    let pivot = record.candidates[0].linkage.crank_pivot();
+    let near = places.iter().map(|place| (place.pivot - pivot).norm()).fold(f64::INFINITY, f64::min);
+    assert!(near < 0.1 * 55.0_f64.max(pivot.norm()), "{near}");
+    let svg = pose_curves_svg(&record).expect("a drawing");
+    assert!(svg.contains("centre points") && svg.contains("circle points"));
+    assert_eq!(pose_curves_svg(&of(5)), None);
 }

@@ -3,7 +3,7 @@
 
 use crate::mechanism::{Dyad, Pose, xy};
 use crate::synthesis::dyads::{CircleMap, circle_minima};
-use crate::synthesis::pose_curves::{Fineness, PosePlace, pose_curves};
+use crate::synthesis::pose_curves::{PAIRED_LIVE, PosePlace, pose_curves};
 use crate::task::Problem;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -64,7 +64,7 @@ fn curves(problem: &Problem) -> Vec<Vec<CurvePlace>> {
         pivot: xy(place.pivot).map(rounded),
         deg: place.transmission_deg.map(|deg| (10.0 * deg).round() / 10.0),
     };
-    let stretches = pose_curves(problem, Fineness::BRIEF).unwrap_or_default();
+    let stretches = pose_curves(problem, PAIRED_LIVE).unwrap_or_default();
     stretches.iter().map(|stretch| stretch.iter().map(place).collect()).collect()
 }
 

@@ -38,12 +38,14 @@ pub(super) fn ended(record: &Record, hits: Option<HitsSoFar>) -> (Option<Sure>, 
 
 /// Describes how sure it is that nothing better was missed.
 fn sure(record: &Record, hits: Option<HitsSoFar>) -> (Sure, String) {
-    if let Some(exact) = record.exact.as_ref().filter(|_| record.method.used == ["continuation"]) {
-        return match exact.completeness {
+    if let Some(of_record) = record.exact.as_ref().filter(|_| record.method.used == ["continuation"]) {
+        let targets = exact::targets(of_record);
+        return match of_record.completeness {
             Completeness::Complete => {
-                (Sure::Sure, "These are all linkages through the points, by the published count.".into())
+                let why = "by the count of targets in general position";
+                (Sure::Sure, format!("These are all linkages through the {targets}, {why}."))
             }
-            _ => (Sure::Fairly, "Some linkages through the points may be missing.".into()),
+            _ => (Sure::Fairly, format!("Some linkages through the {targets} may be missing.")),
         };
     }
     let came = match hits {

@@ -35,7 +35,16 @@ const FARTHEST: f64 = 1e3;
 /// None if more than a curve of dyads meets the poses (equal ones among them, equal angles at all of them, turning about
 /// one point).
 pub fn through_four_curve(poses: &[Pose; 4], samples: usize) -> Vec<Dyad> {
-    four_curve_strands(poses, samples).into_iter().flat_map(|strand| strand.dyads).collect()
+    let Some((scale, poses, compatibility)) = Compatibility::scaled(poses) else { return Vec::new() };
+    let circuits = compatibility.circuits();
+    let each = samples / circuits.len();
+    let places = circuits.iter().flat_map(|circuit| (0..each).map(move |k| circuit.at(middle(k, each))));
+    places.filter_map(|place| compatibility.dyad_at(&poses, place)).map(|dyad| scale.back(dyad)).collect()
+}
+
+/// Returns the parameter in the middle of step k of a circuit in so many steps.
+fn middle(k: usize, steps: usize) -> f64 {
+    TAU * (k as f64 + 0.5) / steps as f64
 }
 
 /// A stretch of the curve of dyads on which no place is left out.
@@ -47,18 +56,67 @@ pub struct Strand {
     pub is_closed: bool,
 }
 
-/// As [`through_four_curve`], in strands.
-pub fn four_curve_strands(poses: &[Pose; 4], samples: usize) -> Vec<Strand> {
-    let Some(scale) = Scale::of(poses) else { return Vec::new() };
-    let poses = poses.map(|pose| scale.pose(&pose));
-    let Some(compatibility) = Compatibility::of(&poses) else { return Vec::new() };
+/// Steps of a circuit, which are halved where neighbours lie far apart, so often at most.
+const STEPS: usize = 120;
+const HALVINGS: u32 = 12;
+/// The distance of neighbours, in sizes, and in parts of their distance from the poses where that is more: aimed at, and beyond
+/// which the curve has passed through infinity between them.
+const NEAR: f64 = 0.06;
+const ACROSS: f64 = 0.5;
+
+/// Returns the curve of [`through_four_curve`] in strands, as finely as it bends.
+pub fn four_curve_strands(poses: &[Pose; 4]) -> Vec<Strand> {
+    let Some((scale, poses, compatibility)) = Compatibility::scaled(poses) else { return Vec::new() };
     let mut strands = Vec::new();
-    for circuit in compatibility.circuits(samples) {
-        let dyads =
-            circuit.iter().map(|turns| compatibility.dyad(&poses, *turns).map(|dyad| scale.back(dyad)));
-        strands.extend(unbroken(dyads.collect()));
+    for circuit in compatibility.circuits() {
+        let at = |psi: f64| compatibility.dyad_at(&poses, circuit.at(psi));
+        let mut dyads: Vec<Option<Dyad>> = Vec::new();
+        let ends: Vec<(f64, Option<Dyad>)> =
+            (0..=STEPS).map(|k| middle(k, STEPS)).map(|psi| (psi, at(psi))).collect();
+        for pair in ends.windows(2) {
+            dyads.push(pair[0].1);
+            between(&at, [pair[0], pair[1]], HALVINGS, &mut dyads);
+        }
+        strands.extend(unbroken(dyads));
+    }
+    for strand in &mut strands {
+        strand.dyads.iter_mut().for_each(|dyad| *dyad = scale.back(*dyad));
     }
     strands
+}
+
+/// Returns how far apart two dyads lie, in sizes, and in parts of their distance from the poses where that is more.
+fn apart(one: &Dyad, other: &Dyad) -> f64 {
+    let (Dyad::RR { pin: m, pivot: g, .. }, Dyad::RR { pin: n, pivot: h, .. }) = (one, other) else {
+        return 0.0;
+    };
+    let of = |p: &Complex, q: &Complex| (p - q).norm() / p.norm().min(q.norm()).max(1.0);
+    of(m, n).max(of(g, h))
+}
+
+/// Adds the places between two neighbours, in their order: none where they are near, a gap where the curve passes through infinity.
+fn between(
+    at: &impl Fn(f64) -> Option<Dyad>,
+    [from, to]: [(f64, Option<Dyad>); 2],
+    halvings: u32,
+    out: &mut Vec<Option<Dyad>>,
+) {
+    let (Some(one), Some(other)) = (from.1, to.1) else { return };
+    let distance = apart(&one, &other);
+    if distance <= NEAR {
+        return;
+    }
+    if halvings == 0 {
+        if distance > ACROSS {
+            out.push(None);
+        }
+        return;
+    }
+    let psi = 0.5 * (from.0 + to.0);
+    let half = (psi, at(psi));
+    between(at, [from, half], halvings - 1, out);
+    out.push(half.1);
+    between(at, [half, to], halvings - 1, out);
 }
 
 /// Returns the strands of a circuit, the last place of which comes before its first, between places that are left out.
@@ -71,6 +129,25 @@ fn unbroken(circuit: Vec<Option<Dyad>>) -> Vec<Strand> {
     strands
         .map(|strand| Strand { dyads: strand.iter().copied().flatten().collect(), is_closed: false })
         .collect()
+}
+
+/// A circuit of the compatibility linkage: the places of its crank for a parameter from 0 to 2 pi.
+#[derive(Clone, Copy, Debug)]
+enum Circuit {
+    /// The crank turns fully, with the other links on one side.
+    Turn { side: f64 },
+    /// The crank rocks about an angle, out on one side and back on the other.
+    Arc { middle: f64, reach: f64 },
+}
+
+impl Circuit {
+    /// Returns the crank's angle from the ground and the side at a parameter.
+    fn at(self, psi: f64) -> (f64, f64) {
+        match self {
+            Circuit::Turn { side } => (psi, side),
+            Circuit::Arc { middle, reach } => (middle + reach * psi.cos(), psi.sin().signum()),
+        }
+    }
 }
 
 /// The compatibility linkage, its poses 1 to 3 numbered so that the first link is the shortest.
@@ -103,10 +180,23 @@ impl Compatibility {
             .then(|| Compatibility { links: order.map(|k| links[k]), equations: order.map(|k| by_number[k]) })
     }
 
-    /// Returns positions [E1, E2, E3] at up to `samples` steps along each of the linkage's circuits.
-    fn circuits(&self, samples: usize) -> Vec<Vec<[Complex; 3]>> {
+    /// Returns the frame of poses, the poses in it and their compatibility linkage; `None` if more than a curve of dyads meets them.
+    fn scaled(poses: &[Pose; 4]) -> Option<(Scale, [Pose; 4], Self)> {
+        let scale = Scale::of(poses)?;
+        let poses = poses.map(|pose| scale.pose(&pose));
+        let compatibility = Compatibility::of(&poses)?;
+        Some((scale, poses, compatibility))
+    }
+
+    /// Returns the ground D1 + D2 + D3.
+    fn ground(&self) -> Complex {
+        self.links.iter().sum()
+    }
+
+    /// Returns the linkage's circuits.
+    fn circuits(&self) -> Vec<Circuit> {
         let [drive, one, other] = self.links.map(|link| link.norm());
-        let ground: Complex = self.links.iter().sum();
+        let ground = self.ground();
         // |V|^2 = |S|^2 + |D1|^2 - 2 |S||D1| cos phi must lie between the squares of |D2| -+ |D3|.
         let (sum, product) = (ground.norm_sqr() + drive * drive, 2.0 * ground.norm() * drive);
         let cosine = |reach: f64| if product > 0.0 { (sum - reach * reach) / product } else { f64::NAN };
@@ -115,29 +205,21 @@ impl Compatibility {
         let high = cosine(one - other).min(1.0);
         let limits = [high.clamp(-1.0, 1.0).acos(), low.clamp(-1.0, 1.0).acos()];
         let full = limits == [0.0, PI] || product == 0.0;
-        let step = |count: usize| move |k: usize| TAU * (k as f64 + 0.5) / count as f64;
-        let at = |(phi, side): (f64, f64)| self.position(ground, phi, side);
-        let all = |places: Vec<(f64, f64)>| places.into_iter().filter_map(at).collect::<Vec<_>>();
         match limits {
-            _ if full => {
-                let half = samples / 2;
-                [1.0, -1.0].map(|side| all((0..half).map(step(half)).map(|phi| (phi, side)).collect())).into()
-            }
-            // One arc about phi = 0 or about phi = pi, out on one side and back on the other.
-            [least, most] if least == 0.0 || most == PI => {
-                let (middle, reach) = if least == 0.0 { (0.0, most) } else { (PI, PI - least) };
-                let place = |psi: f64| (middle + reach * psi.cos(), psi.sin().signum());
-                vec![all((0..samples).map(step(samples)).map(place).collect())]
-            }
+            _ if full => [1.0, -1.0].map(|side| Circuit::Turn { side }).into(),
+            // One arc about phi = 0 or about phi = pi.
+            [0.0, most] => vec![Circuit::Arc { middle: 0.0, reach: most }],
+            [least, PI] => vec![Circuit::Arc { middle: PI, reach: PI - least }],
             [least, most] => {
-                let half = samples / 2;
-                let on = |arc: f64| {
-                    let angle = |psi: f64| arc * (0.5 * (least + most) + 0.5 * (most - least) * psi.cos());
-                    all((0..half).map(step(half)).map(|psi| (angle(psi), psi.sin().signum())).collect())
-                };
-                [1.0, -1.0].map(on).into()
+                let (middle, reach) = (0.5 * (least + most), 0.5 * (most - least));
+                [1.0, -1.0].map(|arc| Circuit::Arc { middle: arc * middle, reach: arc * reach }).into()
             }
         }
+    }
+
+    /// Returns the dyad at a place of the crank; `None` if there is none.
+    fn dyad_at(&self, poses: &[Pose; 4], (phi, side): (f64, f64)) -> Option<Dyad> {
+        self.dyad(poses, self.position(self.ground(), phi, side)?)
     }
 
     /// Returns the position at which D1 E1 lies at an angle phi from the ground, on a side; `None` if the loop is open.
@@ -216,5 +298,41 @@ mod tests {
             passed += usize::from(moved.dyads().iter().all(passes));
         }
         assert!(passed >= 45, "{passed} of {cases}");
+    }
+
+    #[test]
+    fn strands_bend_as_finely_as_they_have_to_and_break_at_infinity_alone() {
+        let draws = &mut stream(28, 0);
+        let (mut worst, mut farthest, mut broken): (f64, f64, usize) = (0.0, 0.0, 0);
+        for case in 0..50 {
+            let poses: [Pose; 4] = random_poses(draws, 4).try_into().expect("four");
+            let (scale, strands) = (Scale::of(&poses).expect("a scale"), four_curve_strands(&poses));
+            assert!(!strands.is_empty(), "case {case}");
+            for strand in &strands {
+                worst = strand.dyads.iter().map(|dyad| error(dyad, &poses)).fold(worst, f64::max);
+                let place = |dyad: &Dyad| match dyad {
+                    Dyad::RR { pin, pivot, .. } => (*pin / scale.size, scale.place(*pivot)),
+                    _ => panic!("an RR dyad"),
+                };
+                for pair in strand.dyads.windows(2) {
+                    let [(m, g), (n, h)] = [place(&pair[0]), place(&pair[1])];
+                    let of = |p: Complex, q: Complex| (p - q).norm() / p.norm().min(q.norm()).max(1.0);
+                    farthest = farthest.max(of(m, n)).max(of(g, h));
+                }
+                broken += usize::from(!strand.is_closed);
+            }
+            // The places of the coarse curve lie on the fine one.
+            let all: Vec<Dyad> = strands.iter().flat_map(|strand| strand.dyads.clone()).collect();
+            for dyad in through_four_curve(&poses, 40) {
+                let (m, g) = match dyad {
+                    Dyad::RR { pin, pivot, .. } => (pin / scale.size, scale.place(pivot)),
+                    _ => panic!("an RR dyad"),
+                };
+                let near = nearest(&dyad, &all) / scale.size;
+                assert!(near < 0.1 * m.norm().max(g.norm()).max(1.0), "case {case}: {near}");
+            }
+        }
+        assert!(worst < 1e-12 && farthest < ACROSS, "{worst:e} {farthest}");
+        assert!(broken > 0);
     }
 }
