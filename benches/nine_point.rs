@@ -1,12 +1,14 @@
 //! Exact synthesis: how long nine points take, or poses and points, and how often everything is found.
 //!
 //! ```text
-//! cargo bench --bench nine_point                     all five parts
+//! cargo bench --bench nine_point                     all parts
 //! cargo bench --bench nine_point -- full             a full solve of problem 3 of 1992, on 1 and 2 threads,
 //!                                                 without and with certificates
 //! cargo bench --bench nine_point -- move             one point moved by 2 % of the size, a frame after the other, 1 thread
 //! cargo bench --bench nine_point -- targets 100      100 targets each: coupler curves, normal points, noisy ellipses
 //! cargo bench --bench nine_point -- poses 100        positions of 100 random linkages each: 5 poses, 4, 3, 2 and 2, 4, 6 points
+//! cargo bench --bench nine_point -- pivots 100       points of 100 random linkages each, with both fixed pivots given and with one
+//! cargo bench --bench nine_point -- dyads 1000       all real dyads of five poses of 1000 random linkages
 //! ```
 //!
 //! Every part asserts its answer before it prints a time. Times are medians of [`RUNS`] runs.
@@ -18,13 +20,14 @@ mod poses;
 #[path = "../tests/common/random.rs"]
 mod random;
 
-use linkwright::internals::mechanism::{Complex, FourBar};
+use linkwright::internals::mechanism::{Complex, Dyad, FourBar, Pose};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, normal, stream, uniform};
 use linkwright::internals::numbers::nine_point::target::{Closure, Kind};
 use linkwright::internals::numbers::nine_point::{
     Certificate, Class, Completeness, Options, Reality, Solution, Solved, Target, certify_all,
     not_proved_distinct, resolve_from, solve,
 };
+use linkwright::internals::synthesis::dyads::through_five;
 use random::{TYPES, linkage, one_of, trace};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -255,6 +258,80 @@ fn with_poses(count: u64) {
     }
 }
 
+/// Solves points of random linkages on one branch, with fixed pivots given.
+fn with_pivots(count: u64) {
+    for given in [2, 1] {
+        let (n, classes) = (9 - 2 * given, Kind::new(0, given).classes());
+        let (mut complete, mut found, mut real, mut unproved) = (0, 0, 0, 0);
+        let (mut times, mut proofs) = (Vec::new(), Vec::new());
+        for index in 0..count {
+            let made = poses::taken(&mut stream(80 + given as u64, index), n, 0.0);
+            let places: Vec<Complex> = made.poses.iter().map(|pose| pose.0).collect();
+            let pivots = [made.linkage.crank_pivot(), made.linkage.follower_pivot()];
+            let target =
+                Target::mixed(places[0], &places[1..], &[], &pivots[..given]).expect("different places");
+            let clock = Instant::now();
+            let answer = solve(&target, &Options::default(), &|_, _| {}, &AtomicBool::new(false));
+            times.push(clock.elapsed().as_secs_f64());
+            let solutions: Vec<Solution> = answer.classes.iter().map(|class| class.solution).collect();
+            let clock = Instant::now();
+            let proved = certify_all(&target, &solutions).iter().filter(|proof| proof.is_ok()).count();
+            proofs.push(clock.elapsed().as_secs_f64());
+            unproved += answer.census.distinct - proved;
+            complete += u64::from(answer.census.distinct == classes);
+            real += answer.census.real;
+            let (crank_angle, assembly) = made.positions[0];
+            let joints = made.linkage.position_with(crank_angle, assembly).joints().expect("closed");
+            found += u64::from(holds(&answer, &made.linkage, [joints.crank_pin, joints.follower_pin]));
+        }
+        println!(
+            "{n} points, {given} given pivots: all {classes} classes {complete} of {count}, the generating linkage {found}; \
+             {:.1} real ones; {unproved} without a certificate; median {:.2} ms, and {:.2} ms for certificates",
+            real as f64 / count as f64,
+            1e3 * median(times),
+            1e3 * median(proofs)
+        );
+        assert_eq!((complete, found), (count, count));
+    }
+}
+
+/// Finds all real dyads of five poses of random linkages.
+fn dyads(count: u64) {
+    let draw = |index: u64| poses::taken(&mut stream(90, index), 5, 0.0);
+    let all: Vec<poses::Taken> = (0..count).map(draw).collect();
+    let sets: Vec<[Pose; 5]> =
+        all.iter().map(|made| std::array::from_fn(|j| Pose::new(made.poses[j].0, made.poses[j].1))).collect();
+    let clock = Instant::now();
+    let found: Vec<Vec<Dyad>> = sets.iter().map(through_five).collect();
+    let time = clock.elapsed().as_secs_f64();
+    let mut generating = 0;
+    let mut counts = [0; 5];
+    for ((made, poses), found) in all.iter().zip(&sets).zip(&found) {
+        counts[found.len()] += 1;
+        let (angle, assembly) = made.positions[0];
+        let joints = made.linkage.position_with(angle, assembly).joints().expect("closed");
+        let both = [
+            (made.linkage.crank_pivot(), joints.crank_pin),
+            (made.linkage.follower_pivot(), joints.follower_pin),
+        ];
+        let span = made.linkage.longest_link().max(made.linkage.crank_side());
+        let has = |(pivot, pin): &(Complex, Complex)| {
+            found.iter().any(|dyad| match dyad {
+                Dyad::RR { pin: m, pivot: g, .. } => {
+                    (g - pivot).norm() < FOUND * span && (poses[0].at(*m) - pin).norm() < FOUND * span
+                }
+                _ => false,
+            })
+        };
+        generating += u64::from(both.iter().all(has));
+    }
+    println!(
+        "five poses: both generating dyads {generating} of {count}; 0 to 4 real dyads {counts:?}; {:.1} ms in all",
+        1e3 * time
+    );
+    assert_eq!(generating, count);
+}
+
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     let part = words.first().map_or("", String::as_str);
@@ -269,5 +346,11 @@ fn main() {
     }
     if part.is_empty() || part == "poses" {
         with_poses(words.get(1).map_or(100, |word| word.parse().expect("a number of targets")));
+    }
+    if part.is_empty() || part == "pivots" {
+        with_pivots(words.get(1).map_or(100, |word| word.parse().expect("a number of targets")));
+    }
+    if part.is_empty() || part == "dyads" {
+        dyads(words.get(1).map_or(1000, |word| word.parse().expect("a number of targets")));
     }
 }

@@ -150,7 +150,7 @@ pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, NotRead> {
     Ok(read_loaded_linkage(argument)?.0)
 }
 
-/// Reads one linkage as [`read_linkage`] does, and the loads of its file; a result has none.
+/// Reads one linkage as [`read_linkage`] does, and the loads of its file, or of its result's problem.
 ///
 /// # Errors
 /// [`NotRead`].
@@ -167,7 +167,7 @@ pub fn read_loaded_linkage(argument: &Path) -> Result<(AnyLinkageFile, Option<Lo
         unit: problem.unit,
         linkage: chosen.candidate.linkage.into(),
     };
-    Ok((file, None))
+    Ok((file, problem.resolved.loads.as_ref().map(|loads| loads.applied.clone())))
 }
 
 /// Reads the shop data of an input's linkage file; a result has none.

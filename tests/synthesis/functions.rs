@@ -7,8 +7,10 @@ use linkwright::internals::judge::assess::assess;
 use linkwright::internals::judge::practicality::sensitivity::{At, Crank, output_sensitivity};
 use linkwright::internals::judge::rank::is_exact;
 use linkwright::internals::judge::verify::verify;
+use linkwright::internals::mechanism::{Complex, Dyad, Pose};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
 use linkwright::internals::numbers::optimise::levenberg_marquardt::derivative_error;
+use linkwright::internals::synthesis::dyads::through_five;
 use linkwright::internals::synthesis::nearest::nearest_positions;
 use linkwright::internals::task::forms::design_space::{Design, Shape};
 use linkwright::internals::task::forms::timed::FunctionFit;
@@ -422,4 +424,67 @@ fn a_wrong_dimension_changes_the_output_as_its_derivative_says() {
             assert!((felt - rms).abs() < 2e-3 * (1.0 + rms), "{name}: {felt} {rms}");
         }
     }
+}
+
+/// Every four-bar through five pairs with both offsets free, by the dyads of the input link as it is seen from the output link
+/// (one of them is the ground): p, q, r, the offsets, and t1 where it is the same at all pairs.
+fn through_five_pairs(inputs: &[f64], outputs: &[f64]) -> Vec<(FourBar, [f64; 2])> {
+    let pose = |j: usize| Pose {
+        position: -Complex::from_polar(1.0, -outputs[j]),
+        direction: Complex::from_polar(1.0, inputs[j] - outputs[j]),
+    };
+    let mut found = Vec::new();
+    for dyad in through_five(&[0, 1, 2, 3, 4].map(pose)) {
+        let Dyad::RR { pin, pivot, length } = dyad else { continue };
+        if pin.norm().max(pivot.norm()) < 1e-6 {
+            continue;
+        }
+        let t1 = |j: usize| {
+            let crank = pin * Complex::from_polar(1.0, inputs[j]);
+            let follower = 1.0 + pivot * Complex::from_polar(1.0, outputs[j]);
+            ((1.0 - crank).conj() * (follower - crank)).im.signum()
+        };
+        if (1..5).all(|j| t1(j) == t1(0)) {
+            let linkage = four_bar(pin.norm(), length, pivot.norm(), t1(0) as i32);
+            found.extend(linkage.map(|linkage| (linkage, [pin.arg(), pivot.arg()])));
+        }
+    }
+    found
+}
+
+#[test]
+fn every_linkage_through_five_pairs_is_among_the_answers() {
+    let draws = &mut stream(98, 0);
+    let (mut several, mut all) = (0, 0);
+    for case in 0..25 {
+        let of = generated(draws, 5);
+        let base = |list: &[f64]| list.iter().map(|angle| angle - list[0]).collect::<Vec<f64>>();
+        let (inputs, outputs) = (base(&of.crank), base(&of.follower));
+        let lines =
+            "sense = \"same\"\n[require]\nlink_ratio_max = 1000\n[solve]\ncandidates = 6\nadvice = false\n";
+        let spec = problem(&inputs, &outputs, lines);
+        let record = solved(spec.clone());
+        assert_true(&record);
+        let checked = Problem::new(spec).expect("a problem");
+        let mut known = 0;
+        for (linkage, [input, _]) in through_five_pairs(&inputs, &outputs) {
+            let crank_deg: Vec<f64> = inputs.iter().map(|angle| (input + angle).to_degrees()).collect();
+            let judged = assess(&checked, linkage, &crank_deg, &[linkage.assembly(); 5]);
+            if !judged.is_some_and(|candidate| candidate.accepted && is_exact(&checked, &candidate)) {
+                continue;
+            }
+            known += 1;
+            let is_it = |candidate: &linkwright::Candidate| {
+                let l = candidate.linkage.four_bar().expect("a four-bar");
+                let links = [l.crank(), l.coupler(), l.follower()];
+                let wanted = [linkage.crank(), linkage.coupler(), linkage.follower()];
+                links.iter().zip(wanted).all(|(one, other)| (one - other).abs() < 1e-5 * (1.0 + other))
+            };
+            assert!(record.candidates.iter().any(is_it), "case {case}: {linkage}");
+        }
+        assert!(known >= 1, "case {case}");
+        several += usize::from(known > 1);
+        all += known;
+    }
+    assert!(several > 0 && all >= 25, "{several} {all}");
 }

@@ -218,3 +218,21 @@ fn a_speed_over_the_crank_angle_has_its_acceleration_in_table_csv_and_json() {
     let (code, _, stderr) = linkwright(folder.path(), &["check", "stops.toml"]);
     assert!(code != 0 && stderr.contains("nowhere 0") && stderr.contains("4:23"), "{stderr}");
 }
+
+#[test]
+fn a_result_is_analysed_under_the_loads_of_its_problem() {
+    let folder = TempDir::new().expect("a folder");
+    let problem = root().join("problems/examples/walking-stride-loaded.toml").display().to_string();
+    let few = "solve.evaluations=3000";
+    let made = linkwright(folder.path(), &["synth", &problem, "--set", few, "--out", "stride", "--quiet"]);
+    assert!(made.0 < 2, "{}", made.2);
+    let text = fs::read_to_string(folder.path().join("stride/record.json")).expect("a record");
+    let record: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let peak = record["candidates"][0]["peak_torque_N_m"].as_f64().expect("a torque");
+    let (code, stdout, stderr) =
+        linkwright(folder.path(), &["analyze", "stride", "--angle", "0,90", "--json"]);
+    assert_eq!(code, 0, "{stderr}");
+    let analysis: serde_json::Value = serde_json::from_str(&stdout).expect("JSON");
+    let found = analysis["loads"]["torque_peak_N_m"]["value"].as_f64().expect("a torque");
+    assert!((found.abs() - peak.abs()).abs() < 1e-6 * peak.abs(), "{found} {peak}");
+}
