@@ -13,11 +13,12 @@
 //! an offset that is half a turn greater. Where ranges are free, the grid has a few scales of inputs and outputs too, and a
 //! drawn start has drawn ones. (Freudenstein 1955, An analytical approach to the design of four-link mechanisms.)
 
-use crate::mechanism::{AssemblyMode, Complex, CouplerSide};
+use crate::mechanism::{AssemblyMode, Complex, CouplerSide, Dyad, Pose};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
+use crate::synthesis::dyads::through_five;
 use crate::task::forms::design_space::{DesignSpace, Shape};
 use crate::task::forms::rows::nearest_type;
-use crate::task::forms::start::Start;
+use crate::task::forms::start::{AS_WRITTEN, Start};
 use crate::task::ranges::{Ranges, Scales};
 use crate::task::spec::Limits;
 use crate::task::{AngleOffset, Link, Problem, Setting, Timing};
@@ -33,6 +34,8 @@ const RANGE_STEPS: usize = 4;
 const MOST_PAIRS: usize = 48;
 /// One drawn start in so many has random lengths; the others have random offsets.
 const RANDOM_EVERY: usize = 3;
+/// Distance of pin and pivot from the origin, in lengths of the ground, below which a dyad is the ground itself.
+const IN_THE_ORIGIN: f64 = 1e-6;
 /// One drawn start with random offsets in so many passes through random pairs exactly.
 const EXACT_EVERY: usize = 2;
 
@@ -108,8 +111,40 @@ impl<'a> FunctionStarts<'a> {
                 }
             }
         }
+        minima.extend(self.of_five_pairs().into_iter().map(|start| (0.0, start)));
         minima.sort_by(|one, other| one.0.total_cmp(&other.0));
         minima.into_iter().map(|(_, start)| start).collect()
+    }
+
+    /// Returns every linkage through five pairs whose offsets are both free; none of other problems.
+    ///
+    /// The input link as it is seen from the output link takes the poses P_j = -conj(f_j), Q_j = e_j conj(f_j), e_j and f_j the
+    /// directions of input and output. One of its four dyads is the ground, with pin and pivot in the origin; every other one is
+    /// a coupler: p e^{i phi_0} its pin, r e^{i psi_0} its pivot, q its length.
+    fn of_five_pairs(&self) -> Vec<Start> {
+        let (Some(pairs), [true, true], true) =
+            (self.pairs.first_chunk::<5>(), self.free, self.ranges.are_written() && self.pairs.len() == 5)
+        else {
+            return Vec::new();
+        };
+        let mut starts = Vec::new();
+        for &sign in self.problem.directions() {
+            let poses = pairs.map(|[e, f]| {
+                let back = if sign < 0.0 { f } else { f.conj() };
+                Pose { position: -back, direction: e * back }
+            });
+            for dyad in through_five(&poses) {
+                let Dyad::RR { pin, pivot, length } = dyad else { continue };
+                if pin.norm().max(pivot.norm()) < IN_THE_ORIGIN {
+                    continue;
+                }
+                let lengths = [pin.norm(), length, pivot.norm()];
+                let offsets = [pin.arg(), pivot.arg()];
+                let solution = Solution { lengths, offsets, scales: AS_WRITTEN, error: 0.0 };
+                starts.extend(self.start(&self.pairs, sign, &solution));
+            }
+        }
+        starts
     }
 
     /// Returns the scales of inputs and outputs of the grid: the middles of even steps of the free ranges.

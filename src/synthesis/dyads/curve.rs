@@ -101,8 +101,12 @@ fn between(
     halvings: u32,
     out: &mut Vec<Option<Dyad>>,
 ) {
-    let (Some(one), Some(other)) = (from.1, to.1) else { return };
-    let distance = apart(&one, &other);
+    // Beside a place that is left out the curve goes on for a while.
+    let distance = match (from.1, to.1) {
+        (Some(one), Some(other)) => apart(&one, &other),
+        (None, None) => return,
+        _ => f64::INFINITY,
+    };
     if distance <= NEAR {
         return;
     }
