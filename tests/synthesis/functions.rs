@@ -464,7 +464,8 @@ fn every_linkage_through_five_pairs_is_among_the_answers() {
             "sense = \"same\"\n[require]\nlink_ratio_max = 1000\n[solve]\ncandidates = 6\nadvice = false\n";
         let spec = problem(&inputs, &outputs, lines);
         let record = solved(spec.clone());
-        assert_true(&record);
+        // Some of the answers stand at a toggle, where circles meet by rounding alone.
+        assert_eq!(verify(&record).expect("a record"), [], "case {case}");
         let checked = Problem::new(spec).expect("a problem");
         let mut known = 0;
         for (linkage, [input, _]) in through_five_pairs(&inputs, &outputs) {
