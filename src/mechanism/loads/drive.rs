@@ -205,7 +205,7 @@ impl SpeedCurve {
     }
 }
 
-/// Computes the time of a turn, integral dphi/|omega|, by three Gauss-Legendre nodes on each of [`STEPS`] steps of every piece: of
+/// Computes the time of a turn, integral dphi/|omega|, by three Gauss-Legendre nodes on each of `STEPS` steps of every piece: of
 /// sixth order in the step.
 fn turn_time(spline: &PeriodicSpline) -> f64 {
     /// At 16 steps the integral is exact to rounding unless the speed nearly vanishes.
