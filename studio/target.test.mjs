@@ -379,7 +379,7 @@ test("nine points: every real linkage, counted, and they follow a point", async 
   assert.match(words.census, /1,442 solutions/);
   await page.mouse.up();
   await doing(page, "done");
-  assert.match(await status(page), /all linkages through the points/);
+  assert.match(await status(page), /all linkages through the nine points/);
   assert.match(await page.locator("#strip").textContent(), /exactly through the points, proved/);
   // Of many the pictures in sight are drawn, and the others when they come into sight.
   const pictures = () =>
