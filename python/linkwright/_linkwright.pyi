@@ -28,6 +28,7 @@ __all__ = [
     "_time_positions",
     "_time_synth",
     "analyze",
+    "balance",
     "build",
     "certify",
     "compare",

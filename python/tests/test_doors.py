@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 from conftest import ARC, call
@@ -343,10 +344,11 @@ def test_a_balance_is_that_of_the_command(tmp_path: Path, program: list[str]) ->
     # From a file with its loads, as the command prints it.
     keys = "[loads]\ngravity = [0, -9.81]\nspeed_rpm = 30\n[loads.body.crank]\nmass_kg = 1.0\ncenter = [300, 0]\n"
     (tmp_path / "lamp.toml").write_text(lamp.to_toml() + keys)
-    for options, asked in [
+    commands: list[tuple[list[str], dict[str, Any]]] = [
         (["--spring", "crank:150,0", "0,120", "--over", "20,70"], {"spring": ("crank:150,0", "0,120"), "over_deg": (20, 70)}),
         (["--torsion", "crank", "--over", "20,70"], {"torsion": "crank", "over_deg": (20, 70)}),
-    ]:
+    ]
+    for options, asked in commands:
         said = call([*program, "balance", str(tmp_path / "lamp.toml"), *options, "--json"])
         assert json.loads(said.stdout) == lw.balance(tmp_path / "lamp.toml", **asked).data
     loaded = lw.FourBar((0, 0), (400, 0), 100, 350, 300, 200, 220, unit="mm")
@@ -354,13 +356,14 @@ def test_a_balance_is_that_of_the_command(tmp_path: Path, program: list[str]) ->
     even = lw.balance(loaded, masses="crank", radius=50, loads=weight)
     assert even.data["ripple_percent"] < 1e-6
     assert even.data["masses"][0]["mass_kg"] * even.data["masses"][0]["distance_m"] == pytest.approx(0.16, rel=1e-6)
-    for wrong, words in [
+    refused: list[tuple[dict[str, Any], str]] = [
         ({}, "one of spring="),
         ({"spring": ("Q", (0, 1))}, "joints and points of this linkage"),
         ({"masses": "crank"}, "radius"),
         ({"masses": "crank", "radius": 5, "even": "noise"}, "shaking-force"),
         ({"spring": ("C", (0, 120)), "over_deg": (30, 30)}, "wider than 0"),
-    ]:
+    ]
+    for wrong, words in refused:
         with pytest.raises(lw.ProblemError, match=words):
             lw.balance(lamp, loads=arm, **wrong)
     with pytest.raises(lw.ProblemError, match="no loads to balance"):
