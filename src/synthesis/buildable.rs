@@ -5,8 +5,8 @@
 //! linkage: from the answers found so far, then in rounds of fresh starts, until the best has been reached `HITS`
 //! times, `QUIET` rounds have brought nothing better, or the evaluations that the caller allows are used.
 //!
-//! Where linkages with a slider are asked for, they are searched for anew under the tightened limits, and four-bars only where they
-//! are asked for too. Of six-bars and eight-bars, whose plates may not stack, no second search follows: those beyond the limits of a buildable linkage
+//! Linkages with a slider are searched for anew under the tightened limits where the problem asks for them, and four-bars only
+//! where it asks for these too. Of six-bars and eight-bars, whose plates may not stack, no second search follows: those beyond the limits of a buildable linkage
 //! are fitted once more within them.
 //!
 //! A four-bar on the limit of its link ratio is nearly a linkage with a slider, the limit of longer and longer links. So

@@ -85,7 +85,7 @@ pub mod sliders {
     /// Of a function: offsets that are drawn in a round, and the crank's offsets of the first one.
     pub const OFFSETS: usize = 40;
     pub const TURNS: usize = 12;
-    /// Where a range of it is free: scales that are drawn in a round.
+    /// Scales of a function that a round draws where one of its ranges is free.
     pub const SCALES: usize = 8;
     /// Batches of families of exact answers.
     pub const FAMILY_BATCHES: u64 = 6;

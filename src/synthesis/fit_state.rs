@@ -2,11 +2,12 @@
 //! slider have in common.
 
 use super::Context;
-use crate::numbers::arithmetic::streams::Stream;
+use crate::numbers::arithmetic::streams::{Stream, uniform};
 use crate::numbers::optimise::convex::Goal;
 use crate::record::Candidate;
 use crate::task::Problem;
 use crate::task::forms::start::Start;
+use crate::task::ranges::Scales;
 
 /// The unknowns of a linkage in the fits of its kind: the start of a fit, or its end.
 pub trait FitState: Clone + Send + Sync {
@@ -19,15 +20,27 @@ pub trait FitState: Clone + Send + Sync {
     /// Returns a random state near this one, in its bounds.
     fn moved(&self, problem: &Problem, draws: &mut Stream) -> Self;
 
-    /// Fits by sequential convex programming, until the objective of the goal (in the problem's units) is at most
-    /// `good_enough` or so many evaluations are used; returns the end and its largest deviation.
-    fn convex(
-        &self,
-        context: Context<'_>,
-        goal: &Goal<'_>,
-        good_enough: f64,
-        evaluations: u64,
-    ) -> (Fitted<Self>, f64);
+    /// Fits by sequential convex programming; returns the end and its largest deviation.
+    fn convex(&self, context: Context<'_>, goal: &Goal<'_>, until: Until) -> (Fitted<Self>, f64);
+}
+
+/// The end of a fit by sequential convex programming before it has converged.
+#[derive(Clone, Copy, Debug)]
+pub struct Until {
+    /// The objective of the goal, in the problem's units, that is good enough.
+    pub good_enough: f64,
+    /// The most evaluations.
+    pub evaluations: u64,
+}
+
+/// Returns random scales of a function's inputs and outputs near others, within the bounds of their ranges; those that are as
+/// written draw nothing. `reach` is the largest relative change.
+pub(super) fn moved_scales(problem: &Problem, scales: Scales, reach: f64, draws: &mut Stream) -> Scales {
+    let ranges = problem.task().ranges();
+    if ranges.are_written() {
+        return scales;
+    }
+    ranges.nearest(scales.map(|scale| scale * (1.0 + reach * uniform(draws, -1.0, 1.0))))
 }
 
 /// The end of a local fit.

@@ -9,7 +9,7 @@ use super::constants::polish::{
     BASINS, EVALUATIONS, FUNCTION_BASINS, FUNCTION_HOPPED, HOP, HOPPED, HOPS, INSIDE, LEAST_BASINS, MAX_HOPS,
     QUIET_HOPS, SAME_DEVIATION, SAME_START, SHARE, STEPS,
 };
-use super::fit_state::{FitState, Fitted};
+use super::fit_state::{FitState, Fitted, Until, moved_scales};
 use super::multistart::{by_merit, fit_and_judge, judged};
 use crate::judge::error::structural_error;
 use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
@@ -94,7 +94,8 @@ fn deviation_polish<S: FitState>(
     evaluations: u64,
 ) -> Fitted<S> {
     let tolerances = measures(context.problem);
-    start.convex(context, &Goal::MaxDeviation { tolerances: &tolerances }, enough, evaluations).0
+    let until = Until { good_enough: enough, evaluations };
+    start.convex(context, &Goal::MaxDeviation { tolerances: &tolerances }, until).0
 }
 
 /// Brings a start to the optimum of its basin under all requirements: the least largest deviation, or the least sum of
@@ -106,7 +107,7 @@ pub fn finish<S: FitState>(context: Context<'_>, start: &S, evaluations: u64) ->
         (Objective::MaxDeviation, _) => deviation_polish(context, start, floor, evaluations),
         (Objective::SumOfSquares, false) => {
             let exact = 1e-6 * exact_cost(problem);
-            start.convex(context, &Goal::SumOfSquares, exact, evaluations).0
+            start.convex(context, &Goal::SumOfSquares, Until { good_enough: exact, evaluations }).0
         }
         (Objective::SumOfSquares, true) => {
             let tolerances = measures(problem);
@@ -118,7 +119,8 @@ pub fn finish<S: FitState>(context: Context<'_>, start: &S, evaluations: u64) ->
             }
             let goal = Goal::SumOfSquaresWithin { tolerances: &tolerances };
             let exact = 1e-6 * exact_cost(problem);
-            let (within, deviation) = inside.convex(context, &goal, exact, left);
+            let (within, deviation) =
+                inside.convex(context, &goal, Until { good_enough: exact, evaluations: left });
             let spent = nearest.evaluations + within.evaluations;
             if within.end.is_none() || deviation > 1.0 + TOLERANCE_MARGIN {
                 return Fitted { evaluations: spent, ..nearest };
@@ -145,22 +147,11 @@ impl FitState for Start {
             let by = HOP * trust.max(0.1 * value.abs()) * uniform(draws, -1.0, 1.0);
             *value = (*value + by).max(low).min(high);
         }
-        let ranges = problem.task().ranges();
-        if !ranges.are_written() {
-            let moved =
-                near.scales.map(|scale| scale * (1.0 + HOP * FRAME_TRUST * uniform(draws, -1.0, 1.0)));
-            near.scales = ranges.nearest(moved);
-        }
+        near.scales = moved_scales(problem, near.scales, HOP * FRAME_TRUST, draws);
         near
     }
 
-    fn convex(
-        &self,
-        context: Context<'_>,
-        goal: &Goal<'_>,
-        good_enough: f64,
-        evaluations: u64,
-    ) -> (Fitted, f64) {
+    fn convex(&self, context: Context<'_>, goal: &Goal<'_>, until: Until) -> (Fitted, f64) {
         const NONE: (Fitted, f64) = (Fitted::NONE, f64::INFINITY);
         let (problem, mut start) = (context.problem, self.clone());
         let held = &mut start.positions;
@@ -168,7 +159,7 @@ impl FitState for Start {
         if settles && !PathFit::new(problem, start.setting).settle(&start.design, held) {
             return NONE;
         }
-        let polishing = Polishing { context, start: &start, goal, good_enough, evaluations };
+        let polishing = Polishing { context, start: &start, goal, until };
         let kept = if problem.task().body().is_some() { Kept::OrderAndBranch } else { Kept::Nothing };
         on_fit(problem, &start, kept, polishing).unwrap_or(NONE)
     }
@@ -179,8 +170,7 @@ struct Polishing<'a> {
     context: Context<'a>,
     start: &'a Start,
     goal: &'a Goal<'a>,
-    good_enough: f64,
-    evaluations: u64,
+    until: Until,
 }
 
 impl FitUser for Polishing<'_> {
@@ -195,12 +185,12 @@ impl FitUser for Polishing<'_> {
         let of_design = context.problem.space(setting.side).trust(size);
         let options = ConvexOptions {
             max_steps: STEPS,
-            max_evaluations: self.evaluations,
+            max_evaluations: self.until.evaluations,
             trust: from_fn(|i| of_design.get(i).copied().unwrap_or(FRAME_TRUST)),
             length: size,
             relative_reduction: 1e-11,
             feasibility: 1e-9 * size,
-            good_enough: self.good_enough,
+            good_enough: self.until.good_enough,
         };
         let end = solve(fit, goal, x, positions.clone(), &options, &|| context.stopped());
         let usable = !matches!(end.outcome, ConvexOutcome::NoStart | ConvexOutcome::Stopped);

@@ -36,9 +36,8 @@ pub struct PosePlace {
     pub transmission_deg: Option<f64>,
 }
 
-/// Returns the curves of a motion of four poses, marked by some `paired` places, in stretches along which they do not break off, one
-/// that closes with its first place at its end too; `None` of another task, and
-/// where more than a curve of dyads meets the poses.
+/// Returns the curves of a motion of four poses in stretches without a gap, marked by some `paired` places; one that closes has its
+/// first place again at its end. `None` of another task, and where more than a curve of dyads meets the poses.
 pub fn pose_curves(problem: &Problem, paired: usize) -> Option<Vec<Vec<PosePlace>>> {
     let task = problem.task();
     let body = task.body().filter(|_| problem.spec().task.is_motion())?;

@@ -7,7 +7,7 @@ use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, ConvexResul
 use crate::record::Candidate;
 use crate::synthesis::Context;
 use crate::synthesis::constants::polish::{HOP, STEPS};
-use crate::synthesis::fit_state::{FitState, Fitted};
+use crate::synthesis::fit_state::{FitState, Fitted, Until, moved_scales};
 use crate::task::Problem;
 use crate::task::forms::slider::fit::settle;
 use crate::task::forms::slider::limits::Limited;
@@ -36,27 +36,17 @@ impl FitState for Start {
             let by = HOP * TRUST * value.abs().max(1.0) * uniform(draws, -1.0, 1.0);
             *value = (*value + by).max(low).min(high);
         }
-        let ranges = problem.task().ranges();
-        if !ranges.are_written() {
-            let moved = near.scales.map(|scale| scale * (1.0 + HOP * TRUST * uniform(draws, -1.0, 1.0)));
-            near.scales = ranges.nearest(moved);
-        }
+        near.scales = moved_scales(problem, near.scales, HOP * TRUST, draws);
         near
     }
 
-    fn convex(
-        &self,
-        context: Context<'_>,
-        goal: &Goal<'_>,
-        good_enough: f64,
-        evaluations: u64,
-    ) -> (Fitted<Start>, f64) {
+    fn convex(&self, context: Context<'_>, goal: &Goal<'_>, until: Until) -> (Fitted<Start>, f64) {
         let target = Target::of(context.problem);
         let task = (context, &target);
         // A tolerance limits two rows, of a function the second is zero.
         match &target.body {
-            None => fitted::<2>(task, self, goal, (good_enough, evaluations)),
-            Some(_) => fitted::<3>(task, self, goal, (good_enough, evaluations)),
+            None => fitted::<2>(task, self, goal, until),
+            Some(_) => fitted::<3>(task, self, goal, until),
         }
     }
 }
@@ -66,7 +56,7 @@ fn fitted<const R: usize>(
     (context, target): (Context<'_>, &Target),
     from: &Start,
     goal: &Goal<'_>,
-    (good_enough, evaluations): (f64, u64),
+    Until { good_enough, evaluations }: Until,
 ) -> (Fitted<Start>, f64) {
     const NONE: (Fitted<Start>, f64) = (Fitted::NONE, f64::INFINITY);
     let problem = context.problem;
