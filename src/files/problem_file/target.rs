@@ -87,6 +87,10 @@ impl Target {
             }
             (points.iter().map(|p| p.0).collect(), Source::File)
         } else if let Some(file) = &path.file {
+            if Path::new(file).extension().is_some_and(|of| of.eq_ignore_ascii_case("svg")) {
+                let message = format!("{file} is a drawing, and file names a table of points");
+                return refuse("file", message, &format!("write svg = \"{file}\""));
+            }
             let mut csv = match whereabouts.text_of(file) {
                 Some(text) => points_file::parse(file, text)?,
                 None => points_file::load(&whereabouts.find(toml, "task.path.file", file)?)?,
