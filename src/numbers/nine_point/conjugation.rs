@@ -134,6 +134,22 @@ fn conjugate_offsets(of: &Enclosure, midpoint: &Midpoint, exchanged: bool) -> Op
     Some(offsets)
 }
 
+/// Gives the image of a cognate map its rotations, those of the crank: (x T_j + delta_j - a)/(x - a); `None` if x = a cannot be
+/// excluded.
+fn rotations_of_the_crank(
+    displacements: &ExactDisplacements,
+    of: &Enclosure,
+    image: &mut Enclosure,
+) -> Option<()> {
+    let (x, a) = (of[0], of[2]);
+    let per_crank = (x - a).inverse()?;
+    for j in 0..displacements.kind.places() {
+        let delta = DoubleDisc::point(displacements.delta[j]);
+        image[PIVOTS + j] = (x * of[PIVOTS + j] + delta - a) * per_crank;
+    }
+    Some(())
+}
+
 /// Applies Roberts' map r to the discs; `None` if x = y or x = a cannot be excluded.
 fn roberts(displacements: &ExactDisplacements, of: &Enclosure) -> Option<Enclosure> {
     let mut image = *of;
@@ -143,12 +159,7 @@ fn roberts(displacements: &ExactDisplacements, of: &Enclosure) -> Option<Enclosu
         let pivots = [(x - a) * y * per_side, a - x, (b * x - a * y) * per_side, a];
         image[first..first + 4].copy_from_slice(&pivots);
     }
-    let (x, a) = (of[0], of[2]);
-    let per_crank = (x - a).inverse()?;
-    for j in 0..displacements.kind.places() {
-        let delta = DoubleDisc::point(displacements.delta[j]);
-        image[PIVOTS + j] = (x * of[PIVOTS + j] + delta - a) * per_crank;
-    }
+    rotations_of_the_crank(displacements, of, &mut image)?;
     Some(image)
 }
 
@@ -167,11 +178,6 @@ fn slider_cognate(displacements: &ExactDisplacements, of: &Enclosure) -> Option<
     for (first, (x, y, a, v)) in [(0, one), (4, other)] {
         image[first..first + 4].copy_from_slice(&[x, y, a, y - v * size]);
     }
-    let (x, a) = (of[0], of[2]);
-    let per_crank = (x - a).inverse()?;
-    for j in 0..displacements.kind.places() {
-        let delta = DoubleDisc::point(displacements.delta[j]);
-        image[PIVOTS + j] = (x * of[PIVOTS + j] + delta - a) * per_crank;
-    }
+    rotations_of_the_crank(displacements, of, &mut image)?;
     Some(image)
 }
