@@ -1,24 +1,27 @@
-//! The position kernel beside the machine's bound (one square root and one division a position) and beside a
-//! textbook solver by angles, in one run. Each is asserted to give the answer before it is timed.
+//! The position kernels beside the machine's bound (the square root and the division that a position needs; a
+//! slider-crank's needs the root alone) and, of the four-bar, beside a textbook solver by angles, in one run. Each is
+//! asserted to give the answer before it is timed.
 
 #[path = "../tests/common/coupler_points.rs"]
 mod coupler_points;
 
 use coupler_points::CouplerPoints;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use linkwright::internals::mechanism::four_bar::position::Kernel;
-use linkwright::internals::mechanism::four_bar::positions::JointColumns;
+use linkwright::internals::mechanism::four_bar::position::{Kernel, LanePosition};
+use linkwright::internals::mechanism::four_bar::positions::{JointColumns, LaneKernel};
 use linkwright::internals::mechanism::{
     AssemblyMode, Complex, CouplerSide, FourBar, InvertedSliderCrank, NaturalCoordinates, SliderCrank,
     SliderLinkage, xy,
 };
-use linkwright::internals::numbers::arithmetic::dispatch::vectorised;
-use linkwright::internals::numbers::arithmetic::lane::{F64x8, Lane};
+use linkwright::internals::numbers::arithmetic::lane::Lane;
 use linkwright::internals::numbers::arithmetic::sine::sin_cos;
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
-const POSITIONS: usize = 512;
+/// No multiple of 512: columns that lie a multiple of 4 KiB apart would make loads wait for stores of others.
+const POSITIONS: usize = 600;
+
+type Group<'a> = criterion::BenchmarkGroup<'a, criterion::measurement::WallTime>;
 
 /// Returns the name of the widest vector instructions that this machine has.
 fn vector_unit() -> &'static str {
@@ -88,19 +91,8 @@ fn positions(c: &mut Criterion) {
 
     let mut group = c.benchmark_group(format!("coupler position ({})", vector_unit()));
     group.throughput(Throughput::Elements(POSITIONS as u64));
-    group.bench_function("bound: one sqrt and one div", |b| {
-        let mut roots = vec![0.0; POSITIONS];
-        b.iter(|| {
-            bound(black_box(&cos), &mut roots);
-            black_box(&mut roots);
-        });
-    });
-    group.bench_function("lanes", |b| {
-        b.iter(|| {
-            out.fill(black_box(&kernel), black_box(&cos), black_box(&sin));
-            black_box(&mut out);
-        });
-    });
+    lanes_row(&mut group, "bound: one sqrt and one div", RootAndDivision, [&cos, &sin]);
+    lanes_row(&mut group, "lanes", kernel, [&cos, &sin]);
     group.bench_function("scalar, cos and sin tabulated", |b| {
         b.iter(|| {
             let mut sum = 0.0;
@@ -134,21 +126,43 @@ fn positions(c: &mut Criterion) {
     group.finish();
 }
 
-/// sqrt(x + 2) and 1/(x + 2): independent, so that their throughputs add up and nothing else counts.
-fn bound(x: &[f64], out: &mut [f64]) {
-    vectorised(
-        #[inline(always)]
-        || {
-            let two = F64x8::splat(2.0);
-            for (x, out) in x.chunks_exact(8).zip(out.chunks_exact_mut(8)) {
-                let shifted = F64x8::load(x, 0) + two;
-                (shifted.sqrt() + shifted.recip()).store(out, 0);
-            }
-        },
-    );
+/// What every position of a slider-crank costs at least: a square root.
+#[derive(Clone, Copy)]
+struct Root;
+
+/// What every position of the other kinds costs at least: a square root and a division.
+#[derive(Clone, Copy)]
+struct RootAndDivision;
+
+impl LaneKernel for Root {
+    #[inline(always)]
+    fn at<L: Lane>(&self, cos: L, sin: L) -> LanePosition<L> {
+        let root = (cos + L::splat(2.0)).sqrt();
+        LanePosition { crank_pin: [cos, sin], follower_pin: [cos, sin], coupler_point: [root, sin], gap: sin }
+    }
 }
 
-/// The kernels of the linkages with a slider, eight at a time and alone, both from the angle.
+impl LaneKernel for RootAndDivision {
+    #[inline(always)]
+    fn at<L: Lane>(&self, cos: L, sin: L) -> LanePosition<L> {
+        let at = Root.at(cos, sin);
+        LanePosition { coupler_point: [at.coupler_point[0], (cos + L::splat(2.0)).recip()], ..at }
+    }
+}
+
+/// Times a kernel, or a bound with the same loads and stores, in lanes at tabulated cosines and sines.
+fn lanes_row(group: &mut Group<'_>, name: &str, kernel: impl LaneKernel + Copy, [cos, sin]: [&[f64]; 2]) {
+    let mut points = CouplerPoints::with_room(POSITIONS);
+    group.bench_function(name, |b| {
+        b.iter(|| {
+            points.fill(black_box(&kernel), black_box(cos), black_box(sin));
+            black_box(&mut points);
+        });
+    });
+}
+
+/// The kernels of the linkages with a slider: coupler points in lanes beside the bound, and all joints from the angle,
+/// eight at a time and alone.
 fn sliders(c: &mut Criterion) {
     let (zero, z) = (Complex::new(0.0, 0.0), Complex::new(5.0, 1.0));
     let line = (Complex::new(0.0, 1.0), 0.3);
@@ -157,37 +171,41 @@ fn sliders(c: &mut Criterion) {
     let inverted = InvertedSliderCrank::from_parts(pivots, 2.0, 0.5, z, AssemblyMode::Plus).expect("lengths");
     let mut group = c.benchmark_group(format!("slider position ({})", vector_unit()));
     group.throughput(Throughput::Elements(POSITIONS as u64));
-    slider_row(&mut group, "slider-crank", &slider);
-    slider_row(&mut group, "inverted slider-crank", &inverted);
+    let angles: Vec<f64> = (0..POSITIONS).map(|i| TAU * i as f64 / POSITIONS as f64).collect();
+    let (sin, cos): (Vec<f64>, Vec<f64>) = angles.iter().map(|angle| sin_cos(*angle)).unzip();
+    lanes_row(&mut group, "bound: one sqrt", Root, [&cos, &sin]);
+    slider_rows(&mut group, "slider-crank", &slider, &angles);
+    lanes_row(&mut group, "bound: one sqrt and one div", RootAndDivision, [&cos, &sin]);
+    slider_rows(&mut group, "inverted slider-crank", &inverted, &angles);
     group.finish();
 }
 
-fn slider_row<L: SliderLinkage>(
-    group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>,
-    name: &str,
-    linkage: &L,
-) {
-    let angles: Vec<f64> = (0..POSITIONS).map(|i| TAU * i as f64 / POSITIONS as f64).collect();
+fn slider_rows<L: SliderLinkage>(group: &mut Group<'_>, name: &str, linkage: &L, angles: &[f64]) {
     let mut columns = [(); 3].map(|()| vec![[0.0; 2]; POSITIONS]);
     let fill = |[c, d, p]: &mut [Vec<[f64; 2]>; 3], angles: &[f64]| {
         linkage.positions(angles, JointColumns { crank_pin: c, follower_pin: d, coupler_point: p });
     };
-    fill(&mut columns, &angles);
+    fill(&mut columns, angles);
+    let (sin, cos): (Vec<f64>, Vec<f64>) = angles.iter().map(|angle| sin_cos(*angle)).unzip();
+    let (kernel, mut points) = (linkage.kernel(), CouplerPoints::with_room(POSITIONS));
+    points.fill(&kernel, &cos, &sin);
     for (i, angle) in angles.iter().enumerate() {
         let at = linkage.position(*angle).joints().expect("the crank turns fully");
         let lanes = columns.each_ref().map(|column| column[i]);
         let alone = [at.crank_pin, at.slider_pin, at.coupler_point].map(xy);
         assert_eq!(lanes, alone, "lanes and scalar agree to the bit");
+        assert_eq!([points.x[i], points.y[i]], alone[2], "tabulated sines give the same digits");
     }
+    lanes_row(group, &format!("{name}, lanes"), kernel, [&cos, &sin]);
     group.bench_function(format!("{name}, lanes, from the angle"), |b| {
         b.iter(|| {
-            fill(black_box(&mut columns), black_box(&angles));
+            fill(black_box(&mut columns), black_box(angles));
         });
     });
     group.bench_function(format!("{name}, scalar, from the angle"), |b| {
         b.iter(|| {
             let mut sum = 0.0;
-            for angle in &angles {
+            for angle in angles {
                 if let Some(joints) = linkage.position(black_box(*angle)).joints() {
                     sum += joints.coupler_point.re;
                 }

@@ -1,6 +1,6 @@
-//! Coupler points at many crank angles, eight at a time: the kernel in lanes as a search uses it.
+//! Coupler points at many crank angles, eight at a time: the kernels in lanes as a search uses them.
 
-use linkwright::internals::mechanism::four_bar::position::Kernel;
+use linkwright::internals::mechanism::four_bar::positions::LaneKernel;
 use linkwright::internals::numbers::arithmetic::dispatch::vectorised;
 use linkwright::internals::numbers::arithmetic::lane::{F64x8, LANES};
 
@@ -26,15 +26,16 @@ impl CouplerPoints {
     ///
     /// # Panics
     /// When `cos` and `sin` differ in length, are no multiple of eight, or exceed the room.
-    pub fn fill(&mut self, kernel: &Kernel, cos: &[f64], sin: &[f64]) {
+    pub fn fill(&mut self, kernel: &(impl LaneKernel + Copy), cos: &[f64], sin: &[f64]) {
         assert_eq!(cos.len(), sin.len(), "as many cosines as sines");
         assert_eq!(cos.len() % LANES, 0, "pad the angles to a multiple of eight");
         let n = cos.len();
         let (x, y, gap) = (&mut self.x[..n], &mut self.y[..n], &mut self.gap[..n]);
-        let kernel = *kernel;
         vectorised(
             #[inline(always)]
             || {
+                // A copy that nothing else refers to stays in registers.
+                let kernel = *kernel;
                 for at in (0..n).step_by(LANES) {
                     let position = kernel.at(F64x8::load(cos, at), F64x8::load(sin, at));
                     position.coupler_point[0].store(x, at);

@@ -60,7 +60,7 @@ impl LaneKernel for Kernel {
 /// # Panics
 /// If there are fewer places than crank angles.
 pub(in crate::mechanism) fn positions_of(
-    kernel: &impl LaneKernel,
+    kernel: &(impl LaneKernel + Copy),
     crank_angles: &[f64],
     joints: JointColumns<'_>,
 ) {
@@ -70,15 +70,17 @@ pub(in crate::mechanism) fn positions_of(
     vectorised(
         #[inline(always)]
         || {
+            // A copy that nothing else refers to stays in registers.
+            let kernel = *kernel;
             let [c, d, p] = columns.map(|column| column.as_chunks_mut::<LANES>());
             let (blocks, rest) = crank_angles.as_chunks::<LANES>();
             for (angles, ((c, d), p)) in blocks.iter().zip(c.0.iter_mut().zip(d.0).zip(p.0)) {
-                block(kernel, angles, [c, d, p]);
+                block(&kernel, angles, [c, d, p]);
             }
             let (mut angles, mut last) = ([0.0; LANES], [[[0.0; 2]; LANES]; 3]);
             angles[..rest.len()].copy_from_slice(rest);
             let [ends_c, ends_d, ends_p] = &mut last;
-            block(kernel, &angles, [ends_c, ends_d, ends_p]);
+            block(&kernel, &angles, [ends_c, ends_d, ends_p]);
             for (place, ends) in [c.1, d.1, p.1].into_iter().zip(&last) {
                 place.copy_from_slice(&ends[..place.len()]);
             }

@@ -9,7 +9,8 @@
 //! D = C + x u,   P = C + Z u
 //! ```
 //!
-//! One division and one square root a position. C on B within rounding leaves u undetermined if h is as small, and the
+//! One division and one square root a position. Sums of products are written as differences, as in
+//! [`crate::mechanism::slider_crank::position`]. C on B within rounding leaves u undetermined if h is as small, and the
 //! loop open otherwise. The closure Im(V conj u) = h, differentiated once and twice:
 //!
 //! ```text
@@ -66,18 +67,18 @@ impl SliderKernel for Kernel {
         let splat = |pair: [f64; 2]| pair.map(L::splat);
         let ([a_x, a_y], [b_x, b_y]) = (splat(self.pivot), splat(self.block));
         let ([z_x, z_y], crank, h) =
-            (splat(self.coupler_offset), L::splat(self.crank), L::splat(self.offset));
-        let [c_x, c_y] = [a_x + crank * cos, a_y + crank * sin];
+            (splat(self.coupler_offset), L::splat(-self.crank), L::splat(self.offset));
+        let [c_x, c_y] = [a_x - crank * cos, a_y - crank * sin];
         let (v_x, v_y) = (b_x - c_x, b_y - c_y);
         let distance_sq = v_x * v_x + v_y * v_y;
         let root = (distance_sq - L::splat(self.offset_sq)).positive_part().sqrt();
         let x = L::splat(self.t1) * root;
         let per = distance_sq.recip();
-        let [u_x, u_y] = [(v_x * x + v_y * h) * per, (v_y * x - v_x * h) * per];
+        let [u_x, u_y] = [(v_x * x - (-h) * v_y) * per, (v_y * x - h * v_x) * per];
         let joints = LanePosition {
             crank_pin: [c_x, c_y],
-            follower_pin: [c_x + x * u_x, c_y + x * u_y],
-            coupler_point: [c_x + (z_x * u_x - z_y * u_y), c_y + (z_x * u_y + z_y * u_x)],
+            follower_pin: [c_x - (-x) * u_x, c_y - (-x) * u_y],
+            coupler_point: [c_x - (z_y * u_y - z_x * u_x), c_y - ((-z_x) * u_y - z_y * u_x)],
             gap: distance_sq * L::splat(1.0 + FLAT_TOLERANCE) - L::splat(self.least_sq),
         };
         SliderLanes { joints, coupler: [u_x, u_y], place: x }

@@ -5,10 +5,11 @@
 //! h = Im((C - Q) conj s)/b               (C to the left of the line; |h| > 1: the loop does not close)
 //! u = s (t1 sqrt(1 - h^2) - i h)
 //! D = Q + y s,   y = Re((C - Q) conj s) + b t1 sqrt(1 - h^2)
-//! P = C + Z u
+//! P = C + Z u = C + (Z s) (t1 sqrt(1 - h^2) - i h)
 //! ```
 //!
-//! One square root and no division a position. The closure Im((C + b u - Q) conj s) = 0, differentiated once and twice:
+//! One square root and no division a position. Sums of products are written as differences, x + y as y - (-x): the digits are
+//! the same, and the compiler then keeps the lanes apart instead of exchanging the terms in some of them. The closure Im((C + b u - Q) conj s) = 0, differentiated once and twice:
 //!
 //! ```text
 //! psi'  = -(s x C')/(b <s, u>)                           y'  = <s, D'>
@@ -33,9 +34,11 @@ pub struct Kernel {
     pivot: [f64; 2],
     crank: f64,
     coupler: f64,
-    per_coupler: f64,
     line_point: [f64; 2],
     direction: [f64; 2],
+    /// s/b.
+    direction_per_coupler: [f64; 2],
+    /// Z s.
     offset: [f64; 2],
     t1: f64,
 }
@@ -51,8 +54,18 @@ impl Kernel {
         offset: [f64; 2],
         assembly: AssemblyMode,
     ) -> Self {
-        let (per_coupler, t1) = (1.0 / coupler, assembly.sign());
-        Kernel { pivot, crank, coupler, per_coupler, line_point, direction, offset, t1 }
+        let [[s_x, s_y], [z_x, z_y]] = [direction, offset];
+        let per = 1.0 / coupler;
+        Kernel {
+            pivot,
+            crank,
+            coupler,
+            line_point,
+            direction,
+            direction_per_coupler: [s_x * per, s_y * per],
+            offset: [z_x * s_x - z_y * s_y, z_x * s_y + z_y * s_x],
+            t1: assembly.sign(),
+        }
     }
 }
 
@@ -61,21 +74,21 @@ impl SliderKernel for Kernel {
     fn place<L: Lane>(&self, cos: L, sin: L) -> SliderLanes<L> {
         let splat = |pair: [f64; 2]| pair.map(L::splat);
         let ([a_x, a_y], [q_x, q_y]) = (splat(self.pivot), splat(self.line_point));
-        let ([s_x, s_y], [z_x, z_y]) = (splat(self.direction), splat(self.offset));
-        let (crank, one) = (L::splat(self.crank), L::splat(1.0));
-        let [c_x, c_y] = [a_x + crank * cos, a_y + crank * sin];
+        let ([s_x, s_y], [m_x, m_y]) = (splat(self.direction), splat(self.direction_per_coupler));
+        let ([w_x, w_y], crank, one) = (splat(self.offset), L::splat(-self.crank), L::splat(1.0));
+        let [c_x, c_y] = [a_x - crank * cos, a_y - crank * sin];
         let (v_x, v_y) = (c_x - q_x, c_y - q_y);
-        let h = (s_x * v_y - s_y * v_x) * L::splat(self.per_coupler);
+        let h = m_x * v_y - m_y * v_x;
         // 1 - h^2, factored for the sake of its digits near a toggle.
-        let root_sq = (one - h) * (one + h);
+        let root_sq = (one - h) * (one - (-h));
         let root = L::splat(self.t1) * root_sq.positive_part().sqrt();
-        let [u_x, u_y] = [s_x * root + s_y * h, s_y * root - s_x * h];
-        let place = (s_x * v_x + s_y * v_y) + L::splat(self.coupler) * root;
+        let [u_x, u_y] = [s_x * root - (-s_y) * h, s_y * root - s_x * h];
+        let place = (s_x * v_x - (-s_y) * v_y) - L::splat(-self.coupler) * root;
         let joints = LanePosition {
             crank_pin: [c_x, c_y],
-            follower_pin: [q_x + s_x * place, q_y + s_y * place],
-            coupler_point: [c_x + (z_x * u_x - z_y * u_y), c_y + (z_x * u_y + z_y * u_x)],
-            gap: root_sq + L::splat(FLAT_TOLERANCE),
+            follower_pin: [q_x - (-s_x) * place, q_y - (-s_y) * place],
+            coupler_point: [c_x - ((-w_y) * h - w_x * root), c_y - (w_x * h - w_y * root)],
+            gap: root_sq - L::splat(-FLAT_TOLERANCE),
         };
         SliderLanes { joints, coupler: [u_x, u_y], place }
     }
