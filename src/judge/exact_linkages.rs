@@ -1,5 +1,5 @@
-//! Real solutions of the continuation as candidates: of each class the best of its mechanisms (six through points, two
-//! where there are poses), judged as every candidate is.
+//! Real solutions of the continuation as candidates: of each class the best of its mechanisms ([`super::mechanisms`]), judged as
+//! every candidate is.
 //!
 //! They are ordered better first: accepted, then lighter defects, then fewer requirements unmet, the better worst
 //! transmission angle, the smaller linkage. That is the order of ranks ([`super::rank`]), since exact errors are equal.
@@ -93,7 +93,7 @@ pub fn class(problem: &Problem, target: &Precise, solution: &Solution, depth: De
 /// Returns the errors at the points, in place of those to the curve.
 fn at_points(
     problem: &Problem,
-    linkage: impl Into<CrankLinkage>,
+    linkage: CrankLinkage,
     crank_deg: &[f64],
     t1_at: &[AssemblyMode],
 ) -> Option<CurveErrorRecord> {
@@ -173,7 +173,7 @@ const NUDGE: f64 = 1e-7;
 pub fn class_at(
     problem: &Problem,
     target: &Precise,
-    (linkage, crank_deg, t1_at): (&FourBar, &[f64], &[AssemblyMode]),
+    (linkage, crank_deg, t1_at): (&CrankLinkage, &[f64], &[AssemblyMode]),
 ) -> Option<Recomputed> {
     let angles: Vec<f64> = crank_deg.iter().map(|deg| deg.to_radians()).collect();
     let given = solution_of(target, linkage, &angles, t1_at)?;
@@ -199,30 +199,29 @@ pub fn class_at(
             ability(&["circuit", "order"]),
             ability(&["circuit", "order", "branch"]),
         ],
-        forms: all()
-            .filter_map(|(m, settled)| Some((form(problem, m, 0.0)?, beyond_doubt(m, settled))))
-            .collect(),
+        forms: all().map(|(m, settled)| (form(problem, m, 0.0), beyond_doubt(m, settled))).collect(),
     })
 }
 
 /// Returns whether the defects of a mechanism are beyond rounding: no point lies at a toggle, and a small change of the
 /// crank angles leaves them as they are.
 fn is_settled(problem: &Problem, mechanism: &Mechanism) -> bool {
-    let defects = |by: f64| form(problem, mechanism, by).map(|form| form.defects);
+    let defects = |by: f64| form(problem, mechanism, by).defects;
     let found = defects(0.0);
     mechanism.least_sine >= CLEAR_OF_TOGGLES && defects(NUDGE) == found && defects(-NUDGE) == found
 }
 
 /// Returns a mechanism with its type and its defects, its crank angles moved by `by` (radians) to and fro from point to
-/// point; `None` if its links are those of no type.
-fn form(problem: &Problem, mechanism: &Mechanism, by: f64) -> Option<ExactForm> {
+/// point.
+fn form(problem: &Problem, mechanism: &Mechanism, by: f64) -> ExactForm {
     let (crank_deg, t1_at) = positions(problem, mechanism);
     let signs = [1.0, -1.0].into_iter().cycle();
     let radians: Vec<f64> =
         crank_deg.iter().zip(signs).map(|(deg, sign)| deg.to_radians() + sign * by).collect();
-    Some(ExactForm {
-        linkage: mechanism.linkage.into(),
-        linkage_type: Some(mechanism.linkage.linkage_type()?),
-        defects: judge(problem.task(), mechanism.linkage, &radians, &t1_at).defects,
-    })
+    let linkage = mechanism.linkage;
+    ExactForm {
+        linkage,
+        linkage_type: linkage.four_bar().and_then(FourBar::linkage_type),
+        defects: judge(problem.task(), linkage, &radians, &t1_at).defects,
+    }
 }

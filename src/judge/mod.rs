@@ -8,7 +8,7 @@
 //! | [`cognates`] | Roberts cognates of the candidates: the other linkages of the same curve, judged under the problem |
 //! | [`costs`] | costs of the active requirements: Lagrange multipliers at a candidate, as rates of the error per unit of a limit |
 //! | [`error`] | structural errors: at the positions of the points, and to the whole coupler curve |
-//! | [`exact_linkages`] | real solutions of the continuation as candidates: of each class the best of its six mechanisms, judged as every candidate is |
+//! | [`exact_linkages`] | real solutions of the continuation as candidates: of each class the best of its mechanisms, judged as every candidate is |
 //! | [`family`] | local dimension of the set of exact answers: detects whether an exact answer belongs to a family |
 //! | [`figures`] | figures by which linkages are compared in a front, computed from a judged candidate alone |
 //! | [`look`] | difference of two candidates, to tell distinct answers apart: by their joints at the first point, cognates included, and by their coupler curves |

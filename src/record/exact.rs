@@ -1,28 +1,34 @@
-//! Exact synthesis: every linkage through nine points, or through a mixture of poses and points that has finitely many,
-//! counted, and the real ones listed.
+//! Exact synthesis: every four-bar through nine points, or through a mixture of poses and points that has finitely many, or every
+//! linkage with a slider through eight points, counted, and the real ones listed.
 
-use crate::mechanism::{AssemblyMode, CrankLinkage, LinkageType};
+use crate::mechanism::{AssemblyMode, CrankLinkage, LinkageKind, LinkageType};
 use crate::numbers::nine_point::target::Kind;
 use crate::task::Defect;
+use crate::task::forms::precision::closure_of;
 use serde::{Deserialize, Serialize};
 
 /// So many classes pass through nine points in general position: C. W. Wampler, A. P. Morgan, A. J. Sommese (1992).
 pub const GENERIC_CLASSES: usize = 1442;
 
-/// Returns the number of classes of targets in general position, `poses` of them poses and the others points, where
-/// `pivots` of the fixed pivots are given. One pose among points asks for no more than a point does.
-pub fn generic_classes(poses: usize, pivots: usize) -> usize {
-    Kind::new(poses.saturating_sub(1), pivots).classes()
+/// Returns the number of classes of linkages of a kind for targets in general position, `poses` of them poses and the others
+/// points, where `pivots` of the fixed pivots are given; 0 for a kind that is not solved for. One pose among points asks for no
+/// more than a point does.
+pub fn generic_classes(kind: LinkageKind, poses: usize, pivots: usize) -> usize {
+    closure_of(kind).map_or(0, |closure| Kind { poses: poses.saturating_sub(1), pivots, closure }.classes())
 }
 
 /// The result of an exact solution: counts of all solutions, and the list of the real ones.
 ///
 /// A class is one coupler curve through nine points: three cognates with two labels of their links. Where there are poses it
-/// is one linkage, with two labels: cognates turn the coupler differently. So it is where a fixed pivot is given. That each linkage
-/// marked as certified exists is proved; that no others do is not: that rests on the published count
-/// ([`generic_classes`]) for targets in general position.
+/// is one linkage, with two labels: cognates turn the coupler differently. So it is where a fixed pivot is given. Through eight
+/// points it is a pair of slider-cranks, cognates, or one inverted slider-crank. That each linkage
+/// marked as certified exists is proved; that no others do is not: that rests on the count
+/// ([`generic_classes`]) for targets in general position, published or found by monodromy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExactRecord {
+    /// The kind of linkages that were solved for; absent of four-bars.
+    #[serde(default = "four_bar", skip_serializing_if = "is_four_bar")]
+    pub kind: LinkageKind,
     /// The number of poses among the targets.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub poses: usize,
@@ -39,6 +45,24 @@ pub struct ExactRecord {
     pub linkages: Vec<ExactLinkage>,
 }
 
+impl ExactRecord {
+    /// Returns the number of classes of such targets in general position.
+    pub fn generic_classes(&self) -> usize {
+        generic_classes(self.kind, self.poses, self.pivots)
+    }
+}
+
+/// Returns the kind of a record that names none.
+fn four_bar() -> LinkageKind {
+    LinkageKind::FourBar
+}
+
+/// Whether it is the kind that is not written.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+fn is_four_bar(kind: &LinkageKind) -> bool {
+    *kind == LinkageKind::FourBar
+}
+
 /// Whether there are none, which is not written.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
 fn is_zero(n: &usize) -> bool {
@@ -49,7 +73,7 @@ fn is_zero(n: &usize) -> bool {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Completeness {
-    /// As many as points in general position have: all, by the published count.
+    /// As many as points in general position have: all, by the count for these.
     Complete,
     /// Points that are not in general position: fewer isolated solutions, and no path was lost.
     NonGeneric,
@@ -172,6 +196,8 @@ impl ExactForm {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Certified {
     /// One, and only one, real linkage whose coupler passes exactly through all points and poses has its fixed pivots and, at
-    /// the first pose, or the first point where there is none, its pins within this distance of those recorded. In the file's unit.
+    /// the first pose, or the first point where there is none, its pins within this distance of those recorded: C and D, of an
+    /// inverted slider-crank C alone. So has the point of the line at one size of the target (the diagonal of its box) from D, along
+    /// the slider's line, or from C, along the coupler's line: that bounds the direction. In the file's unit.
     pub radius: f64,
 }

@@ -1,11 +1,12 @@
-//! The linkages through nine points, or poses and points (exact synthesis), in words and as a table.
+//! The linkages through nine points, or poses and points, or eight points of a linkage with a slider (exact synthesis), in words
+//! and as a table.
 
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain, verdict};
 use super::text::{COLUMNS, clean, grouped, indented, shortened, significant, wrapped};
 use super::words;
-use crate::mechanism::AssemblyMode;
-use crate::record::{Census, Completeness, ExactLinkage, ExactRecord, Record, generic_classes};
+use crate::mechanism::{AssemblyMode, LinkageKind};
+use crate::record::{Census, Completeness, ExactLinkage, ExactRecord, Record};
 use crate::task::Defect;
 
 /// The number of rows if not all are asked for.
@@ -51,8 +52,12 @@ pub(super) fn said(record: &Record, exact: &ExactRecord) -> Vec<String> {
 pub fn targets(exact: &ExactRecord) -> String {
     const NUMBERS: [&str; 10] =
         ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];
-    let ExactRecord { poses, pivots, .. } = *exact;
-    let free = if poses == 0 { 9 } else { 10 - 2 * poses.min(5) };
+    let ExactRecord { kind, poses, pivots, .. } = *exact;
+    let free = match poses {
+        0 if kind.has_slider() => 8,
+        0 => 9,
+        _ => 10 - 2 * poses.min(5),
+    };
     let points = free - (2 * pivots).min(free);
     let counted = |n: usize, noun: &str| {
         (n > 0).then(|| format!("{} {noun}{}", NUMBERS[n.min(9)], if n == 1 { "" } else { "s" }))
@@ -63,30 +68,42 @@ pub fn targets(exact: &ExactRecord) -> String {
     parts.join(" and ") + given
 }
 
-/// Returns whether the solutions are those through points alone, which come with cognates.
-fn has_cognates(exact: &ExactRecord) -> bool {
+/// Returns whether the targets are points alone.
+fn has_points_alone(exact: &ExactRecord) -> bool {
     exact.poses == 0 && exact.pivots == 0
+}
+
+/// Returns the name of one of the linkages.
+pub fn noun(exact: &ExactRecord) -> &'static str {
+    match exact.kind {
+        LinkageKind::SliderCrank => "slider-crank",
+        LinkageKind::InvertedSliderCrank => "inverted slider-crank",
+        _ => "linkage",
+    }
 }
 
 /// Returns the heading of the list.
 pub(super) fn title(exact: &ExactRecord) -> String {
-    format!("Every linkage through the {}", targets(exact))
+    format!("Every {} through the {}", noun(exact), targets(exact))
 }
 
 /// Returns what a class is listed by.
 pub(super) fn best_of(exact: &ExactRecord) -> &'static str {
-    match (exact.poses, exact.pivots) {
-        (0, 0) => "the best of its six mechanisms (three cognates, either link driven)",
-        (0, 1) => "the best of its four mechanisms (two cognates with that pivot, either link driven)",
+    match (exact.kind, exact.poses, exact.pivots) {
+        (LinkageKind::SliderCrank, ..) => "the better of its two mechanisms (two cognates)",
+        (LinkageKind::InvertedSliderCrank, ..) => "the linkage (it has no cognates)",
+        (_, 0, 0) => "the best of its six mechanisms (three cognates, either link driven)",
+        (_, 0, 1) => "the best of its four mechanisms (two cognates with that pivot, either link driven)",
         _ => "the better of its two mechanisms (either link driven)",
     }
 }
 
 /// Returns up to what solutions are counted once.
 fn up_to(exact: &ExactRecord) -> &'static str {
-    match (exact.poses, exact.pivots) {
-        (0, 0 | 1) => " up to cognates",
-        (_, 0) => " up to the order of the two links",
+    match (exact.kind, exact.poses, exact.pivots) {
+        (LinkageKind::InvertedSliderCrank, ..) => "",
+        (_, 0, 0 | 1) => " up to cognates",
+        (_, _, 0) => " up to the order of the two links",
         _ => "",
     }
 }
@@ -102,19 +119,20 @@ pub fn none_through(record: &Record) -> Option<String> {
     } else {
         "the candidates come near"
     };
-    let all = targets(exact);
-    Some(if has_cognates(exact) && on_one_line(&record.problem.resolved.task.points) {
-        format!(
+    let has_line = exact.kind == LinkageKind::FourBar && has_points_alone(exact);
+    if has_line && on_one_line(&record.problem.resolved.task.points) {
+        return Some(format!(
             "The nine points lie on one line, and a coupler curve meets a line in at most six points: no linkage passes \
              through all nine; {nearest}."
-        )
-    } else {
-        format!(
-            "The {all} are non-generic (in special position), and no linkage through all of them was found ({all} in general \
-             position have {} solutions): {nearest}.",
-            count(generic_classes(exact.poses, exact.pivots))
-        )
-    })
+        ));
+    }
+    // A whole family of slider-cranks draws a straight line.
+    let isolated = if exact.kind.has_slider() { "isolated " } else { "" };
+    let (all, noun, general) = (targets(exact), noun(exact), count(exact.generic_classes()));
+    Some(format!(
+        "The {all} are non-generic (in special position), and no {isolated}{noun} through all of them was found ({all} in \
+         general position have {general} solutions): {nearest}."
+    ))
 }
 
 /// Returns whether points lie on one line, within the rounding of their extent.
@@ -142,7 +160,7 @@ fn count(n: usize) -> String {
 fn found(exact: &ExactRecord) -> String {
     let census = &exact.census;
     let found = count(census.classes);
-    let all = count(generic_classes(exact.poses, exact.pivots));
+    let all = count(exact.generic_classes());
     let (targets, up_to) = (targets(exact), up_to(exact));
     let some = format!("{found} of {all} solutions{up_to} were found");
     match exact.completeness {
@@ -154,8 +172,8 @@ fn found(exact: &ExactRecord) -> String {
             let mut text = format!(
                 "The {} are non-generic: {isolated} isolated solutions{up_to} were found, where {} in general position \
                  have {all}.",
-                if has_cognates(exact) { "points" } else { &targets },
-                if has_cognates(exact) { "points" } else { &targets },
+                if has_points_alone(exact) { "points" } else { &targets },
+                if has_points_alone(exact) { "points" } else { &targets },
             );
             if census.not_certified > 0 {
                 let rest = count(census.not_certified);
@@ -180,7 +198,9 @@ fn real(exact: &ExactRecord) -> String {
         "have links that are conjugates of each other"
     };
     let complex = count(census.complex);
-    let mut text = if exact.pivots > 0 && census.real_curve == 0 {
+    // The conjugate of a real curve is a cognate's, or the other link's.
+    let is_alone = exact.pivots > 0 || exact.kind == LinkageKind::InvertedSliderCrank;
+    let mut text = if is_alone && census.real_curve == 0 {
         format!("{real}, {complex} are complex.")
     } else {
         format!("{real}, {} more {without}, {complex} are complex.", count(census.real_curve))
@@ -237,13 +257,18 @@ fn proof(exact: &ExactRecord) -> String {
     }
     text.push_str(". Not proved: that there are no others; ");
     text.push_str(if exact.generic {
-        match (exact.poses, exact.pivots) {
-            (0 | 1, 0) => "that rests on the count published by Wampler, Morgan and Sommese (1992).",
-            (2..=4, 0) => {
+        match (exact.kind, exact.poses, exact.pivots) {
+            (LinkageKind::SliderCrank, ..) => "that rests on the count published by Tari and Su (2010).",
+            (LinkageKind::FourBar, 0 | 1, 0) => {
+                "that rests on the count published by Wampler, Morgan and Sommese (1992)."
+            }
+            (LinkageKind::FourBar, 2..=4, 0) => {
                 "that rests on the count published by Brake, Hauenstein, Murray, Myszka and Wampler (2016)."
             }
-            (_, 0) => "that rests on Burmester's count of dyads, four at most.",
-            (0 | 1, 2) => "that rests on the count published by Morgan and Wampler (1990).",
+            (LinkageKind::FourBar, _, 0) => "that rests on Burmester's count of dyads, four at most.",
+            (LinkageKind::FourBar, 0 | 1, 2) => {
+                "that rests on the count published by Morgan and Wampler (1990)."
+            }
             _ => "that rests on a count by monodromy, made twice from different beginnings.",
         }
     } else {

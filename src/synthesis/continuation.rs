@@ -18,7 +18,7 @@ use crate::record::{
     Candidate, Census, Certified, Completeness, Evaluations, ExactRecord, Reason, generic_classes,
 };
 use crate::task::Problem;
-use crate::task::forms::precision::{Precise, counted};
+use crate::task::forms::precision::{Counted, Precise, counted};
 use crate::task::spec::Method;
 use rayon::prelude::*;
 
@@ -45,7 +45,7 @@ pub fn listed(
 ) -> Exact {
     let classes = classes(problem, target, real, depth);
     let proofs: Vec<Option<Certified>> = match depth {
-        Depth::Whole => classes.par_iter().map(|class| certified(target, &class.best)).collect(),
+        Depth::Whole => classes.par_iter().map(|class| certified(problem, target, &class.best)).collect(),
         Depth::Glance => vec![None; classes.len()],
     };
     let count = |of: fn(&Class) -> bool| classes.iter().filter(|class| of(class)).count();
@@ -57,9 +57,9 @@ pub fn listed(
         ..census
     };
     let linkages = classes.iter().zip(proofs).map(|(class, proof)| class.listed(proof)).collect();
-    let (poses, pivots) = counted(problem);
-    let generic = census.classes == generic_classes(poses, pivots);
-    Exact { record: ExactRecord { poses, pivots, census, generic, completeness, linkages }, classes }
+    let Counted { kind, poses, pivots } = counted(problem);
+    let generic = census.classes == generic_classes(kind, poses, pivots);
+    Exact { record: ExactRecord { kind, poses, pivots, census, generic, completeness, linkages }, classes }
 }
 
 /// Lists all real linkages of a quick solve, for a target that moves: without certificates and without distances to
@@ -150,7 +150,7 @@ pub fn finish(problem: &Problem, outcome: &mut SearchOutcome) {
     let bar = nearly_exact(problem);
     exact.linkages.iter_mut().for_each(|class| class.rank = 0);
     for candidate in outcome.candidates.iter_mut().filter(|c| c.error.sum_sq <= bar) {
-        candidate.certified = certified(&target, candidate);
+        candidate.certified = certified(problem, &target, candidate);
         for class in &mut exact.linkages {
             let forms = std::iter::once(&class.linkage).chain(class.others.iter().map(|form| &form.linkage));
             if forms.into_iter().any(|form| same(form, &candidate.linkage)) {

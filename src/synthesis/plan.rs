@@ -29,12 +29,14 @@ use crate::task::{AngleOffset, Problem};
 const FAR: f64 = 100.0;
 
 /// Searches as the problem's `[solve]` table says: if there are nine precision points, `continuation` and `auto` first
-/// solve for all linkages through them, and `auto` approximates if these do not give enough answers.
+/// solve for all linkages through them, and `auto` approximates if these do not give enough answers. Of linkages with a slider
+/// `continuation` alone does, through eight points.
 ///
 /// # Errors
 /// [`PopulationError`] if a population search cannot be set up.
 pub fn search(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
-    if !context.problem.spec().design.is_of_four_bars() {
+    let spec = context.problem.spec();
+    if !spec.design.is_of_four_bars() && spec.solve.method != Method::Continuation {
         return approximate(context);
     }
     let Some(exact) = continuation::solve(context) else { return approximate(context) };

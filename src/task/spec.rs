@@ -322,7 +322,8 @@ pub enum Method {
     /// Levenberg-Marquardt from many starts.
     LeastSquares,
     /// Every linkage through exactly nine points, or through 5, 4, 3 or 2 poses and 0, 2, 4 or 6 points, by following the
-    /// solutions of the equations from a known set. Each fixed pivot that is given takes the place of two points.
+    /// solutions of the equations from a known set. Each fixed pivot that is given takes the place of two points. Where `mechanism`
+    /// is one kind with a slider: every linkage of that kind through exactly eight points.
     Continuation,
 }
 

@@ -836,7 +836,8 @@ export interface Expect {
   rms_deg?: number;
 }
 /**
- * The number of linkages through nine points, up to cognates, or through poses and points.
+ * The number of linkages through nine points, up to cognates, through poses and points, or through eight points of a linkage with a
+ * slider.
  */
 export interface ExpectedCensus {
   /**

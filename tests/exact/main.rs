@@ -1,4 +1,5 @@
-//! Exact synthesis through nine points, and through poses and points: all solutions, and what is proved of them.
+//! Exact synthesis through nine points, through poses and points, and through eight points of linkages with a slider: all solutions,
+//! and what is proved of them.
 
 mod certificate;
 #[path = "../common/mod.rs"]
@@ -17,6 +18,7 @@ mod poses;
 mod problems;
 #[path = "../common/random.rs"]
 mod random;
+mod slider_problems;
 mod sliders;
 mod solutions;
 mod start_set;

@@ -1,5 +1,6 @@
 //! Every slider-crank and inverted slider-crank through eight points, beside a computation of their positions from their lengths.
 
+use linkwright::internals::mechanism::{AssemblyMode, CrankLinkage, InvertedSliderCrank, SliderCrank};
 use linkwright::internals::numbers::arithmetic::Complex;
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
 use linkwright::internals::numbers::nine_point::target::{Closure, Kind, STEPS};
@@ -12,21 +13,21 @@ use std::sync::atomic::AtomicBool;
 
 /// Lengths of a linkage with a slider.
 #[derive(Clone, Copy, Debug)]
-struct Linkage {
-    closure: Closure,
+pub struct Linkage {
+    pub closure: Closure,
     /// The crank's pivot and its length.
-    pivot: Complex,
-    crank: f64,
+    pub pivot: Complex,
+    pub crank: f64,
     /// Of a slider-crank: the sliding pin in the frame of the coupler, whose origin is the crank's pin. Of an inverted one: a
     /// unit vector along the coupler line.
-    slider: Complex,
+    pub slider: Complex,
     /// Of a slider-crank: the direction of the fixed line, of modulus one, and a point of it. Of an inverted one: the fixed
     /// pivot; the coupler line passes the crank's pin at the distance `offset`, to the left of `slider` if positive.
-    line: Complex,
-    at: Complex,
-    offset: f64,
+    pub line: Complex,
+    pub at: Complex,
+    pub offset: f64,
     /// The coupler point in the frame of the coupler.
-    point: Complex,
+    pub point: Complex,
 }
 
 impl Linkage {
@@ -46,6 +47,49 @@ impl Linkage {
             offset: next(-0.6, 0.6),
             point: Complex::new(next(-2.0, 2.0), next(-2.0, 2.0)),
         }
+    }
+
+    /// Returns a random linkage with eight angles of its crank at which it closes well.
+    pub fn with_eight_places(draws: &mut Stream, closure: Closure) -> (Linkage, Vec<f64>) {
+        loop {
+            let linkage = Linkage::random(draws, closure);
+            let angles = linkage.eight_angles(draws);
+            if angles.len() == STEPS {
+                return (linkage, angles);
+            }
+        }
+    }
+
+    /// Returns up to eight angles of the crank, apart from each other, at which it closes well.
+    fn eight_angles(&self, draws: &mut Stream) -> Vec<f64> {
+        let mut angles: Vec<f64> = Vec::new();
+        for _ in 0..200 {
+            let angle = uniform(draws, 0.0, TAU);
+            let clear = self.turns(angle).first().is_some_and(|(_, sine)| *sine > 0.1);
+            if clear && angles.len() < STEPS && angles.iter().all(|other| (other - angle).abs() > 0.05) {
+                angles.push(angle);
+            }
+        }
+        angles
+    }
+
+    /// Returns the linkage as the program has it.
+    pub fn linkage(&self) -> CrankLinkage {
+        let (a, t1) = (self.pivot, AssemblyMode::Plus);
+        match self.closure {
+            Closure::SliderCrank => {
+                let line = (self.at, self.line.arg());
+                let lengths = [self.crank, self.slider.norm()];
+                let frame = self.slider / self.slider.norm();
+                SliderCrank::from_parts(a, lengths, line, self.point / frame, t1).map(CrankLinkage::from)
+            }
+            _ => {
+                let point = self.point / self.slider;
+                InvertedSliderCrank::from_parts([a, self.at], self.crank, self.offset, point, t1)
+                    .map(CrankLinkage::from)
+            }
+        }
+        .expect("a linkage")
     }
 
     /// Returns the directions of the coupler's frame at a crank angle, none or two, with the sine of the angle at which the
@@ -84,7 +128,7 @@ impl Linkage {
     }
 
     /// Returns P at a crank angle for each turn of the coupler, with the sine.
-    fn places(&self, angle: f64) -> Vec<(Complex, f64)> {
+    pub fn places(&self, angle: f64) -> Vec<(Complex, f64)> {
         let pin = self.pivot + Complex::from_polar(self.crank, angle);
         self.turns(angle).into_iter().map(|(turn, sine)| (pin + turn * self.point, sine)).collect()
     }
@@ -108,7 +152,7 @@ impl Linkage {
         }
     }
 
-    fn extent(&self) -> f64 {
+    pub fn extent(&self) -> f64 {
         self.crank + self.slider.norm() + self.point.norm() + (self.at - self.pivot).norm()
     }
 }
@@ -121,14 +165,7 @@ fn instance(closure: Closure, index: u64, line: Option<f64>) -> (Target, Solutio
         if let Some(angle) = line {
             linkage.line = Complex::from_polar(1.0, angle);
         }
-        let mut angles: Vec<f64> = Vec::new();
-        for _ in 0..200 {
-            let angle = uniform(&mut draws, 0.0, TAU);
-            let clear = linkage.turns(angle).first().is_some_and(|(_, sine)| *sine > 0.1);
-            if clear && angles.len() < STEPS && angles.iter().all(|other| (other - angle).abs() > 0.05) {
-                angles.push(angle);
-            }
-        }
+        let angles = linkage.eight_angles(&mut draws);
         if angles.len() < STEPS {
             continue;
         }

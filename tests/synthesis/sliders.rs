@@ -335,7 +335,7 @@ fn every_problem_of_known_linkages_is_met_exactly() {
         assert!(verify(&record).expect("a problem").is_empty(), "{}", path.display());
         count += 1;
     }
-    assert_eq!(count, 10);
+    assert_eq!(count, 12);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Nine points from the command line.
+//! Nine points, and eight of linkages with a slider, from the command line.
 
 use crate::common::root;
 use assert_cmd::Command;
@@ -49,4 +49,41 @@ fn nine_points_of_which_none_can_be_used_end_with_exit_code_1() {
     let (code, text) = linkwright(folder.path(), &["synth", &problem, "--out", "r"]);
     assert_eq!(code, 1, "{text}");
     assert!(text.contains("8 are linkages"), "{text}");
+}
+
+#[test]
+fn eight_points_of_linkages_with_a_slider_are_solved_written_and_verified() {
+    let folder = TempDir::new().expect("a folder");
+    for (name, real, words) in [
+        (
+            "slider-exact",
+            19,
+            "279 solutions up to cognates: as many as eight points in general position have",
+        ),
+        ("inverted-exact", 174, "2,220 solutions: as many as eight points in general position have"),
+    ] {
+        let problem = root().join(format!("problems/sliders/{name}.toml")).display().to_string();
+        let (code, text) = linkwright(folder.path(), &["synth", &problem, "--out", name, "--all"]);
+        assert_eq!(code, 0, "{text}");
+        assert!(text.contains(words), "{text}");
+        let list = text.split("radius  verdict").nth(1).expect("a table");
+        let rows = list.lines().filter(|line| line.contains("slider-crank  ")).count();
+        assert_eq!(rows, real, "{text}");
+        for more in [&["verify", name][..], &["compare", name], &["report", name]] {
+            let (code, text) = linkwright(folder.path(), more);
+            assert_eq!(code, 0, "{text}");
+        }
+        let first = format!("{name}/linkage-1.toml");
+        let (code, text) = linkwright(folder.path(), &["analyze", &first]);
+        assert_eq!(code, 0, "{text}");
+        let record = folder.path().join(name).join("record.json");
+        let text = fs::read_to_string(&record).expect("a record");
+        let tampered = text.replacen("\"in_order\": 9", "\"in_order\": 10", 1);
+        let tampered = tampered.replacen("\"in_order\": 6", "\"in_order\": 7", 1);
+        assert_ne!(tampered, text);
+        fs::write(&record, tampered).expect("a record");
+        let (code, text) = linkwright(folder.path(), &["verify", name]);
+        assert_eq!(code, 1, "{text}");
+        assert!(text.contains("exact.census.in_order"), "{text}");
+    }
 }

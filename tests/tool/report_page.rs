@@ -4,7 +4,7 @@ use crate::common::root;
 use crate::report::records::{candidate, detail, ellipse, k18, linkage, path, record, rocking, shapes};
 use linkwright::internals::files::generator::FileKind;
 use linkwright::internals::judge::practicality::{Build, Practicality};
-use linkwright::internals::mechanism::AssemblyMode;
+use linkwright::internals::mechanism::{AssemblyMode, LinkageKind};
 use linkwright::internals::record::*;
 use linkwright::internals::report::html::{Extent, report_html, report_with_drawings};
 use linkwright::internals::task::Defect;
@@ -133,6 +133,7 @@ fn with_exact(mut record: Record) -> Record {
         others: Vec::new(),
     };
     record.exact = Some(ExactRecord {
+        kind: LinkageKind::FourBar,
         poses: 0,
         pivots: 0,
         census: Census {

@@ -39,13 +39,13 @@ pub(super) fn ended(record: &Record, hits: Option<HitsSoFar>) -> (Option<Sure>, 
 /// Describes how sure it is that nothing better was missed.
 fn sure(record: &Record, hits: Option<HitsSoFar>) -> (Sure, String) {
     if let Some(of_record) = record.exact.as_ref().filter(|_| record.method.used == ["continuation"]) {
-        let targets = exact::targets(of_record);
+        let (noun, targets) = (exact::noun(of_record), exact::targets(of_record));
         return match of_record.completeness {
             Completeness::Complete => {
                 let why = "by the count of targets in general position";
-                (Sure::Sure, format!("These are all linkages through the {targets}, {why}."))
+                (Sure::Sure, format!("These are all {noun}s through the {targets}, {why}."))
             }
-            _ => (Sure::Fairly, format!("Some linkages through the {targets} may be missing.")),
+            _ => (Sure::Fairly, format!("Some {noun}s through the {targets} may be missing.")),
         };
     }
     let came = match hits {
@@ -105,7 +105,8 @@ fn in_the_way(record: &Record) -> String {
 pub(super) fn census(record: &ExactRecord) -> Vec<String> {
     if record.completeness == Completeness::NonGeneric && record.census.classes == 0 {
         return vec![format!(
-            "No linkage was found that passes all {}: they are in special position, such as on one line.",
+            "No {} was found that passes all {}: they are in special position, such as on one line.",
+            exact::noun(record),
             exact::targets(record)
         )];
     }

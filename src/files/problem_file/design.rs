@@ -7,7 +7,7 @@ use crate::files::toml_text::TomlText;
 use crate::mechanism::{FLAT_TOLERANCE, LinkageKind};
 use crate::task::Output;
 use crate::task::region::Region;
-use crate::task::spec::{DesignSpec, Limits, RequireSpec, SolveSpec, TaskSpec};
+use crate::task::spec::{DesignSpec, Limits, Method, RequireSpec, SolveSpec, TaskSpec};
 use crate::task::values::OneOrMore;
 use crate::task::without_several_loops::WithoutSeveralLoops;
 
@@ -91,7 +91,8 @@ pub(super) fn of_kinds(
     }
     let Some(slider) = kinds.iter().find(|kind| kind.has_slider()) else { return Ok(()) };
     let method = solve.method;
-    if method.finds_sliders() {
+    // Continuation says itself which linkages with a slider it finds.
+    if method.finds_sliders() || method == Method::Continuation {
         return Ok(());
     }
     let why =

@@ -28,7 +28,7 @@ pub struct Expect {
     /// The largest error of the body's angle in that answer, degrees.
     #[serde(deserialize_with = "plain::number", skip_serializing_if = "Option::is_none")]
     pub max_deg: Option<f64>,
-    /// The number of linkages through nine points, or through poses and points.
+    /// The number of linkages through nine points, through poses and points, or through eight points of a linkage with a slider.
     #[serde(deserialize_with = "plain::table", skip_serializing_if = "Option::is_none")]
     pub exact: Option<ExpectedCensus>,
     /// Answers that were published.
@@ -36,7 +36,8 @@ pub struct Expect {
     pub published: Vec<Published>,
 }
 
-/// The number of linkages through nine points, up to cognates, or through poses and points.
+/// The number of linkages through nine points, up to cognates, through poses and points, or through eight points of a linkage with a
+/// slider.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ExpectedCensus {

@@ -450,7 +450,7 @@ fn deviation_of(toml: &TomlText<'_>, path: &TaskSpec) -> Checked<Option<Diagnost
     Ok(path.weight.is_some().then(|| toml.at("solve.objective", message).with_help(help)))
 }
 
-/// Checks that continuation has nine precision points, or poses and points that have finitely many answers.
+/// Checks that continuation has precision points, or poses and points, through which finitely many linkages of one kind pass.
 fn continuation_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Checked<()> {
     if spec.solve.method != Method::Continuation {
         return Ok(());
@@ -463,6 +463,7 @@ fn continuation_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Checked<()> {
         precision::Refusal::Coincident { second, .. } if spec.task.body.is_none() => {
             format!("task.path.points.{second}")
         }
+        precision::Refusal::Kinds => "design.mechanism".to_owned(),
         _ => "solve.method".to_owned(),
     };
     toml.refuse(&key, refusal.to_string(), refusal.remedy())

@@ -6,7 +6,7 @@ use crate::judge::assess::assess;
 use crate::judge::certified::{certified, nearly_exact, same, target};
 use crate::judge::exact_linkages::{Recomputed, class_at};
 use crate::record::{
-    Candidate, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, Reason, Record, generic_classes,
+    Candidate, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, Reason, Record,
 };
 use crate::task::forms::precision::counted;
 
@@ -23,14 +23,15 @@ impl Comparison<'_> {
         let problem = self.problem;
         let target = target(problem);
         for candidate in record.candidates.iter().chain(&record.buildable) {
-            let found = || target.as_ref().and_then(|target| certified(target, candidate));
+            let found = || target.as_ref().and_then(|target| certified(problem, target, candidate));
             self.of_candidate(candidate.rank).proof(candidate.certified, found);
         }
         let Some(exact) = &record.exact else { return };
         self.census(exact, record.termination.reason == Reason::Cancelled);
-        let (poses, pivots) = counted(problem);
-        self.same("exact.poses", exact.poses, poses);
-        self.same("exact.pivots", exact.pivots, pivots);
+        let counted = counted(problem);
+        self.same("exact.kind", exact.kind, counted.kind);
+        self.same("exact.poses", exact.poses, counted.poses);
+        self.same("exact.pivots", exact.pivots, counted.pivots);
         let Some(target) = target else {
             let wanted = "points and poses that have finitely many answers";
             return self.differ("exact", wanted, "a task without");
@@ -50,14 +51,13 @@ impl Comparison<'_> {
                 }
                 continue;
             }
-            let class = at.0.four_bar().and_then(|linkage| class_at(problem, &target, (linkage, at.1, at.2)));
-            let Some(class) = class else {
+            let Some(class) = class_at(problem, &target, at) else {
                 own.differ("the linkage", "one that passes all points", "not that");
                 continue;
             };
             if let Some(found) = &class.judged {
                 own.figures(listed, found);
-                own.proof(listed.certified, || certified(&target, found));
+                own.proof(listed.certified, || certified(problem, &target, found));
             }
             own.class(listed, &class, &record.candidates);
         }
@@ -138,7 +138,7 @@ impl Comparison<'_> {
         // A search that was cancelled records only that.
         let found = if cancelled && exact.completeness == Completeness::Cancelled {
             Completeness::Cancelled
-        } else if c.classes == generic_classes(exact.poses, exact.pivots) {
+        } else if c.classes == exact.generic_classes() {
             Completeness::Complete
         } else if c.failed == 0 && c.singular > 0 && c.singular >= c.duplicate {
             Completeness::NonGeneric
@@ -146,7 +146,7 @@ impl Comparison<'_> {
             Completeness::Incomplete
         };
         self.alike("exact.completeness", &exact.completeness, &found);
-        self.same("exact.generic", exact.generic, c.classes == generic_classes(exact.poses, exact.pivots));
+        self.same("exact.generic", exact.generic, c.classes == exact.generic_classes());
     }
 
     fn figures(&mut self, listed: &ExactLinkage, found: &Candidate) {

@@ -61,6 +61,34 @@ impl CrankLinkage {
         }
     }
 
+    /// Returns the same linkage described the other way round: with the opposite direction of a slider-crank's line, or of the line
+    /// of an inverted one's coupler, and the opposite t1. `None` if it has no slider.
+    pub fn reversed(&self) -> Option<Self> {
+        match self {
+            CrankLinkage::SliderCrank(linkage) => {
+                let own = linkage.parameters();
+                let reversed = SliderCrankParameters {
+                    line_deg: own.line_deg - 180.0_f64.copysign(own.line_deg),
+                    assembly: own.assembly.opposite(),
+                    ..own
+                };
+                SliderCrank::new(reversed).ok().map(CrankLinkage::SliderCrank)
+            }
+            CrankLinkage::InvertedSliderCrank(linkage) => {
+                let own = linkage.parameters();
+                let reversed = InvertedSliderCrankParameters {
+                    offset: -own.offset,
+                    coupler_x: -own.coupler_x,
+                    coupler_y: -own.coupler_y,
+                    assembly: own.assembly.opposite(),
+                    ..own
+                };
+                InvertedSliderCrank::new(reversed).ok().map(CrankLinkage::InvertedSliderCrank)
+            }
+            CrankLinkage::FourBar(_) | CrankLinkage::MultiLoop(_) => None,
+        }
+    }
+
     /// Returns the linkage moved by the vector `by`.
     ///
     /// # Errors

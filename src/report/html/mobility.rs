@@ -41,7 +41,8 @@ pub(super) fn mobility(record: &Record, c: &Candidate) -> Markup {
     if let Some(proof) = c.certified {
         let unit = words::unit_suffix(record);
         said.push(format!(
-            "Proved: one linkage, and only one, passes exactly through all {} within {}{unit} of this one.",
+            "Proved: one {}, and only one, passes exactly through all {} within {}{unit} of this one.",
+            record.exact.as_ref().map_or("linkage", exact::noun),
             record.exact.as_ref().map_or_else(|| "nine points".to_owned(), exact::targets),
             significant(proof.radius, 2)
         ));

@@ -1,5 +1,5 @@
-//! Live exact synthesis for nine points, or poses and points, that the user moves: every real linkage through them, followed from the
-//! solutions before by continuation.
+//! Live exact synthesis for nine points, poses and points, or eight points of linkages with a slider, that the user moves: every real
+//! linkage through them, followed from the solutions before by continuation.
 
 use crate::judge::certified::target;
 use crate::numbers::nine_point::{Completeness, Options, Solved, resolve_from, solve};
@@ -48,8 +48,10 @@ mod tests {
     use crate::judge::certified::same;
     use crate::record::Census;
 
-    fn points(moved: f64) -> Problem {
-        let text = include_str!("../../../problems/exact/crank-rocker.toml");
+    const NINE: &str = include_str!("../../../problems/exact/crank-rocker.toml");
+    const EIGHT: &str = include_str!("../../../problems/sliders/slider-exact.toml");
+
+    fn points(text: &str, moved: f64) -> Problem {
         let mut spec = parse("nine", text, None, &[]).expect("a problem").spec;
         spec.task.points[4][0] += moved;
         Problem::new(spec).expect("a task")
@@ -57,20 +59,25 @@ mod tests {
 
     #[test]
     fn moved_points_have_the_linkages_that_a_run_of_their_own_finds() {
+        follows(NINE, 1442, 0.01);
+        follows(EIGHT, 279, 0.2);
+    }
+
+    fn follows(text: &str, classes: usize, by: f64) {
         let cancel = AtomicBool::new(false);
         let mut nine = Nine::default();
-        let first = nine.follow(&points(0.0), &cancel).expect("nine points");
-        assert!(first.record.census.classes == 1442 && first.record.linkages.len() > 3);
-        let moved = nine.follow(&points(0.01), &cancel).expect("nine points");
+        let first = nine.follow(&points(text, 0.0), &cancel).expect("exact answers");
+        assert!(first.record.census.classes == classes && first.record.linkages.len() > 3);
+        let moved = nine.follow(&points(text, by), &cancel).expect("exact answers");
         let job = Job {
             name: "n".into(),
             source: None,
             unit: None,
-            spec: points(0.01).spec().clone(),
+            spec: points(text, by).spec().clone(),
             front: None,
         };
         let record = run(&job, &Context { cancel: &cancel, observer: &|_| {} }).expect("it runs").record;
-        let afresh = record.exact.expect("nine points");
+        let afresh = record.exact.expect("exact answers");
         let counts = |c: &Census| (c.classes, c.real, c.one_circuit, c.in_order, c.free_of_defects);
         assert_eq!(counts(&moved.record.census), counts(&afresh.census));
         // Equals may come in another order, and of six equal mechanisms another may come first.
@@ -83,8 +90,8 @@ mod tests {
             assert_eq!((followed.accepted, followed.in_order), (found.accepted, found.in_order));
             assert!(followed.certified.is_none() && found.certified.is_some());
         }
-        // Ten points are not accepted.
-        let mut spec = points(0.0).spec().clone();
+        // One point more is not accepted.
+        let mut spec = points(text, 0.0).spec().clone();
         spec.task.points.push([9.0, 9.0]);
         assert!(nine.follow(&Problem::new(spec).expect("a task"), &cancel).is_none());
     }
