@@ -93,7 +93,8 @@ pub fn certified(problem: &Problem, of: &Precise, candidate: &Candidate) -> Opti
     let radius = either.iter().take(second.cranks()).map(radius).fold(f64::INFINITY, f64::min);
     // Outward: the sums above are rounded as well.
     let radius = radius * (1.0 + ROUNDINGS * f64::EPSILON);
-    radius.is_finite().then_some(Certified { radius })
+    // That there is no other one is proved as far as `alone_within`.
+    (radius <= proof.alone_within * target.scale).then_some(Certified { radius })
 }
 
 /// Returns a bound of the distance of a recorded mark from `beyond` added to the mark of a refined solution, rounding included.
