@@ -189,3 +189,27 @@ test("a six-bar is asked for, follows a point, moves with all of its joints, and
   // Nothing was asked for that is refused.
   assert.deepEqual(said, []);
 });
+
+test("every slider-crank through eight points, counted, and they follow a point", async () => {
+  const { page, said, end } = await begun(new URL("../problems/sliders/slider-exact.toml", import.meta.url).pathname);
+  await doing(page, "done");
+  await tab(page, "wishes");
+  assert.ok(await page.locator("#exact").isChecked());
+  const counted = () => page.locator("#nine button").first().textContent();
+  assert.equal(await counted(), "19 all real");
+  assert.match(await page.locator("#nine .census").textContent(), /279 solutions up to cognates/);
+  await shot(page, "slider-exact");
+  const on = await dragPoint(page, 3, [14, 10]);
+  assert.ok(on.every((cards) => cards.length > 0 && cards.every((text) => /slider-crank/.test(text))));
+  await page.waitForFunction(() => /^\d+ all real$/.test(document.querySelector("#nine button").textContent));
+  await doing(page, "done");
+  assert.match(await page.locator("#nine .census").textContent(), /279 solutions up to cognates/);
+  assert.match(await problemText(page), /mechanism = \["slider-crank"\][^]*method = "continuation"/);
+  // Four-bars are determined by nine points: eight leave a family.
+  await tab(page, "wishes");
+  await page.locator("#kind").selectOption("four-bar");
+  await page.waitForSelector("#nine", { state: "hidden" });
+  assert.ok(await page.locator("#exact").isDisabled());
+  await end();
+  assert.deepEqual(said, []);
+});

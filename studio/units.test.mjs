@@ -460,6 +460,11 @@ test("all linkages are told where there are finitely many: nine points, five pos
   const [a, b] = [{ "design.A": "[0, -20]" }, { "design.B": "[40, -20]" }];
   assert.ok(canBeExact(task(7, 0, a)) && canBeExact(task(5, 0, { ...a, ...b })) && canBeExact(task(2, 3, b)));
   assert.ok(!canBeExact(task(9, 0, a)) && !canBeExact(task(0, 4, a)));
+  // Eight of a slider-crank, of no other and not of several.
+  const of = (mechanism, ...asked) => canBeExact({ ...task(...asked), mechanism });
+  assert.ok(of(["slider-crank"], 8, 0) && of(["inverted-slider-crank"], 8, 0));
+  assert.ok(!of(["slider-crank"], 9, 0) && !of(["slider-crank"], 8, 0, a) && !of(["slider-crank"], 7, 1));
+  assert.ok(!of(["six-bar"], 8, 0) && !of(["slider-crank", "inverted-slider-crank"], 8, 0));
   // A range is no place.
   assert.ok(canBeExact(task(9, 0, { "design.A": "[[0, 10], [-20, 20]]" })));
   assert.ok(!canBeExact({ ...task(0, 5), timing: { crank_deg: [0, 1, 2, 3, 4], offset: "free" } }));

@@ -224,5 +224,5 @@ export function fillRequirements(task: Task) {
   input("exact").disabled = !canBeExact(task) && !isExact(task);
   input("exact").title = canBeExact(task)
     ? ""
-    : "Needs nine points, or five poses; a place alone counts half one, a given pivot two points";
+    : "Needs nine points (eight of a slider), or five poses; a place alone counts half one, a given pivot two points";
 }

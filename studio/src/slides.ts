@@ -5,6 +5,7 @@ import { byId } from "./ids";
 import type { Page } from "./kit";
 import { labelOf } from "./labels";
 import type { LinkageKind, Task } from "./messages";
+import { settled } from "./task";
 
 /** The numbers that a slider-crank's slider has to keep: their fields, with the keys that ask for them. */
 const NUMBERS = [
@@ -29,7 +30,7 @@ export function ofKinds(task: Task, kinds: LinkageKind[]): Task {
   const hasRail = kinds.includes("slider-crank");
   const stays = Object.entries(kept ?? {}).filter(([key]) => hasRail || !OF_RAILS.includes(key));
   const next: Task = { ...rest, mechanism, kept: stays.length > 0 ? Object.fromEntries(stays) : undefined };
-  if (!hasSliders(next)) return { ...next, types: task.types.length > 0 || !turns ? task.types : MOTOR };
+  if (!hasSliders(next)) return settled({ ...next, types: task.types.length > 0 || !turns ? task.types : MOTOR });
   if (mechanism?.join() === "slider-crank") Object.assign(next, { stroke, time_ratio });
   // They are fitted by least squares alone.
   return { ...next, types: [], input: turns ? "full-turn" : undefined, method: undefined, objective: undefined };

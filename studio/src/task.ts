@@ -11,11 +11,13 @@ const FIXED = /^\[[^[\],]+,[^[\],]+\]$/;
 export const EXACT = "continuation";
 
 export const isExact = (task: Task) => task.method === EXACT;
-/** Whether as many points, poses and fixed pivots are asked for as have finitely many linkages. */
+/** Whether as many points, poses and fixed pivots are asked for as have finitely many linkages of one kind. */
 export function canBeExact({ points, timing, body, function: pairs, mechanism, kept }: Task): boolean {
-  if (timing || pairs || mechanism) return false;
+  if (timing || pairs) return false;
   const poses = body?.angle_deg.filter((deg) => Number.isFinite(deg)).length ?? 0;
   const pivots = ["design.A", "design.B"].filter((key) => FIXED.test(kept?.[key] ?? "")).length;
+  if (mechanism)
+    return /^[^,]*slider-crank$/.test(mechanism.join()) && points.length === EXACT_POINTS - 1 && poses + pivots === 0;
   // With one pivot and more poses one link would have too much to meet and the other too little.
   if (pivots === 1 && poses > 3) return false;
   return points.length + poses + 2 * pivots === EXACT_POINTS + (poses > 0 ? 1 : 0);

@@ -248,14 +248,22 @@ fn the_radius_of_a_proof_bounds_pivots_and_the_direction_of_the_line() {
         let own = best.certified.expect("a proof").radius;
         assert!(own < 1e-9 * size, "{own:e}");
         // The turn of the line about Q moves its point at the target's size from D by at least that less the travel's part.
-        for by in [1e-9, 1e-8] {
-            for linkage in moved(&best.linkage, size, by) {
+        let proved = |by: f64| {
+            let all = moved(&best.linkage, size, by).into_iter().map(|linkage| {
                 let mut candidate = best.clone();
                 candidate.linkage = linkage;
-                let radius = certified(&problem, &of, &candidate).expect("a proof").radius;
+                certified(&problem, &of, &candidate).map(|proof| proof.radius)
+            });
+            all.collect::<Vec<_>>()
+        };
+        for by in [1e-13, 1e-12] {
+            for radius in proved(by) {
+                let radius = radius.expect("a proof");
                 assert!(radius >= 0.9 * by * size && radius < 100.0 * by * size, "{name}: {radius:e}");
             }
         }
+        // That far away it is not proved that there is no other one.
+        assert!(proved(1e-8).iter().all(Option::is_none), "{name}");
     }
 }
 

@@ -317,7 +317,7 @@ fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio
     let before = Instant::now();
     assert_eq!(guest.posts("/jobs/long/cancel", &json!(null)).status(), 202);
     let stopped = guest.waits_for("long", "stopped");
-    assert!(before.elapsed() < Duration::from_secs(5), "{:?}", before.elapsed());
+    assert!(before.elapsed() < Duration::from_secs(30), "{:?}", before.elapsed());
     assert!(stopped["resumable"] == true && stopped["result"]["reproducible"] == false, "{stopped}");
     assert_eq!(guest.posts("/jobs/long/cancel", &json!(null)).status(), 404);
     assert_eq!(guest.posts("/jobs/long/resume", &json!(null)).status(), 202);

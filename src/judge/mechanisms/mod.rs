@@ -57,8 +57,8 @@ pub struct Mechanism {
     pub miss: f64,
     /// The largest ratio of these distances to the tolerance for passing there.
     pub miss_over_limit: f64,
-    /// The least sine of the transmission angle at the points, times the leverage of a slider: near 0 a point lies at a toggle, and rounding decides its
-    /// assembly.
+    /// The least sine of the transmission angle at the points, times the leverage of a slider: near 0 a point lies at a toggle, and
+    /// rounding decides its assembly.
     pub least_sine: f64,
     /// Whether it passes every point, within [`PASSES`].
     pub passes: bool,
