@@ -8,6 +8,7 @@
 //! cargo bench --bench nine_point -- targets 100      100 targets each: coupler curves, normal points, noisy ellipses
 //! cargo bench --bench nine_point -- poses 100        positions of 100 random linkages each: 5 poses, 4, 3, 2 and 2, 4, 6 points
 //! cargo bench --bench nine_point -- pivots 100       points of 100 random linkages each, with both fixed pivots given and with one
+//! cargo bench --bench nine_point -- sliders 100      eight points of 100 random slider-cranks, and of as many inverted ones
 //! cargo bench --bench nine_point -- dyads 1000       all real dyads of five poses of 1000 random linkages
 //! ```
 //!
@@ -20,7 +21,9 @@ mod poses;
 #[path = "../tests/common/random.rs"]
 mod random;
 
-use linkwright::internals::mechanism::{Complex, Dyad, FourBar, Pose};
+use linkwright::internals::mechanism::{
+    AssemblyMode, Complex, Dyad, FourBar, InvertedSliderCrank, Pose, SliderCrank, SliderLinkage,
+};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, normal, stream, uniform};
 use linkwright::internals::numbers::nine_point::target::{Closure, Kind};
 use linkwright::internals::numbers::nine_point::{
@@ -29,6 +32,7 @@ use linkwright::internals::numbers::nine_point::{
 };
 use linkwright::internals::synthesis::dyads::through_five;
 use random::{TYPES, linkage, one_of, trace};
+use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -132,11 +136,14 @@ fn moved() {
     println!("one point moved, 1 thread: {:.3} s a frame; kept {kept:?}", median(times));
 }
 
-/// Whether a linkage, at its position for the first point, is among the real classes.
-fn holds(answer: &Solved, linkage: &FourBar, joints: [Complex; 2]) -> bool {
+/// The fixed pivots and pins of a four-bar at the first point.
+fn marks(linkage: &FourBar, [c, d]: [Complex; 2]) -> [Complex; 4] {
+    [linkage.crank_pivot(), c, linkage.follower_pivot(), d]
+}
+
+/// Whether a linkage is among the real classes: its fixed pivot and its pin, of one link or of both, at the first point.
+fn holds(answer: &Solved, wanted: &[Complex]) -> bool {
     let target = &answer.target;
-    let [a, b] = [linkage.crank_pivot(), linkage.follower_pivot()];
-    let wanted = [a, joints[0], b, joints[1]];
     let size = wanted.iter().map(|z| (z - target.points[0]).norm()).fold(0.0, f64::max);
     answer.classes.iter().filter(|class| class.reality == Reality::Real).any(|class| {
         class.solution.images(&target.displacements).iter().any(|image| {
@@ -144,7 +151,7 @@ fn holds(answer: &Solved, linkage: &FourBar, joints: [Complex; 2]) -> bool {
             places
                 .iter()
                 .zip(wanted)
-                .all(|(z, w)| (target.points[0] + z * target.scale - w).norm() < FOUND * size)
+                .all(|(z, w)| (target.points[0] + z * target.scale - *w).norm() < FOUND * size)
         })
     })
 }
@@ -173,7 +180,7 @@ fn targets(count: u64) {
         });
         let minor = uniform(&mut numbers, 0.2, 1.0);
         let ellipse = std::array::from_fn(|j| {
-            let angle = std::f64::consts::TAU * j as f64 / 9.0;
+            let angle = TAU * j as f64 / 9.0;
             Complex::new(
                 normal(&mut numbers, angle.cos(), NOISE),
                 normal(&mut numbers, minor * angle.sin(), NOISE),
@@ -188,7 +195,7 @@ fn targets(count: u64) {
                 println!("  {} {index}: {:?}", ["curve", "normal", "ellipse"][kind], answer.census);
             }
             if kind == 0 {
-                let there = holds(&answer, &linkage, pins);
+                let there = holds(&answer, &marks(&linkage, pins));
                 found += u64::from(there);
                 if !there {
                     println!("  curve {index}: its linkage was not found");
@@ -207,17 +214,25 @@ fn targets(count: u64) {
     );
 }
 
+/// Returns the pivots and pins of a linkage at the first of the positions taken from it.
+fn at_first(made: &poses::Taken) -> Vec<Complex> {
+    let (crank_angle, assembly) = made.positions[0];
+    let joints = made.linkage.position_with(crank_angle, assembly).joints().expect("closed");
+    marks(&made.linkage, [joints.crank_pin, joints.follower_pin]).to_vec()
+}
+
 /// Solves a target made of positions of each of so many random linkages on one branch, without noise; at least `least` of them whole.
+/// `draw` gives a target with the pivots and pins of the linkage that made it ([`holds`]).
 fn survey(
     name: &str,
     classes: usize,
     (count, least): (u64, u64),
-    draw: impl Fn(u64) -> (Target, poses::Taken),
+    draw: impl Fn(u64) -> (Target, Vec<Complex>),
 ) {
     let (mut complete, mut found, mut real, mut unproved) = (0, 0, 0, 0);
     let (mut times, mut proofs) = (Vec::new(), Vec::new());
     for index in 0..count {
-        let (target, made) = draw(index);
+        let (target, wanted) = draw(index);
         let clock = Instant::now();
         let answer = solve(&target, &Options::default(), &|_, _| {}, &AtomicBool::new(false));
         times.push(clock.elapsed().as_secs_f64());
@@ -232,9 +247,7 @@ fn survey(
         }
         complete += u64::from(whole);
         real += answer.census.real;
-        let (crank_angle, assembly) = made.positions[0];
-        let joints = made.linkage.position_with(crank_angle, assembly).joints().expect("closed");
-        let there = holds(&answer, &made.linkage, [joints.crank_pin, joints.follower_pin]);
+        let there = holds(&answer, &wanted);
         if !there {
             println!("  {name} {index}: its linkage was not found");
         }
@@ -262,7 +275,7 @@ fn with_poses(count: u64) {
             let points: Vec<Complex> = made.poses[1..n - others].iter().map(|pose| pose.0).collect();
             let turned: Vec<(Complex, f64)> =
                 made.poses[n - others..].iter().map(|(place, own)| (*place, own - angle)).collect();
-            (Target::mixed(first, &points, &turned, &[]).expect("different places"), made)
+            (Target::mixed(first, &points, &turned, &[]).expect("different places"), at_first(&made))
         };
         let least = if others == 1 { (97 * count).div_ceil(100) } else { count };
         let name = format!("{} poses, {} points", others + 1, 8 - 2 * others);
@@ -279,10 +292,56 @@ fn with_pivots(count: u64) {
             let places: Vec<Complex> = made.poses.iter().map(|pose| pose.0).collect();
             let pivots = [made.linkage.crank_pivot(), made.linkage.follower_pivot()];
             let target = Target::mixed(places[0], &places[1..], &[], &pivots[..given]);
-            (target.expect("different places"), made)
+            (target.expect("different places"), at_first(&made))
         };
         let name = format!("{n} points, {given} given pivots");
         survey(&name, Kind::new(0, given).classes(), (count, count), draw);
+    }
+}
+
+/// Returns eight points of a linkage with a slider on one assembly, at crank angles apart from each other where its transmission angle
+/// is above 6 degrees, with A and, at the first point, C; `None` if it has not so many.
+fn eight_points<L: SliderLinkage>(linkage: &L, draws: &mut Stream) -> Option<([Complex; 8], Vec<Complex>)> {
+    let mut angles: Vec<f64> = Vec::new();
+    for _ in 0..200 {
+        let angle = uniform(draws, 0.0, TAU);
+        let clear = linkage.transmission_angle(angle).is_some_and(|mu| mu > 0.1);
+        if clear && angles.iter().all(|other| (other - angle).abs() > 0.05) {
+            angles.push(angle);
+        }
+    }
+    let at = |angle: &f64| linkage.position(*angle).joints();
+    let points: Vec<Complex> = angles.iter().filter_map(|a| Some(at(a)?.coupler_point)).take(8).collect();
+    let marks = vec![linkage.crank_pivot(), at(angles.first()?)?.crank_pin];
+    Some((points.try_into().ok()?, marks))
+}
+
+/// Solves eight points of random linkages with a slider.
+fn with_sliders(count: u64) {
+    for closure in [Closure::SliderCrank, Closure::InvertedSliderCrank] {
+        let name = format!("8 points, {closure:?}");
+        let kind = Kind::of_points(closure);
+        let draw = |index: u64| {
+            let draws = &mut stream(100 + u64::from(closure == Closure::SliderCrank), index);
+            loop {
+                let mut place = || Complex::new(uniform(draws, -1.0, 1.0), uniform(draws, -1.0, 1.0));
+                let (a, z, at) = (place(), place() * 2.0, place() * 2.0);
+                let (crank, turn) = (uniform(draws, 0.4, 1.2), uniform(draws, 0.0, TAU));
+                let (coupler, offset) = (uniform(draws, 0.6, 3.0), uniform(draws, -0.6, 0.6));
+                let taken = if closure == Closure::SliderCrank {
+                    let made =
+                        SliderCrank::from_parts(a, [crank, coupler], (at, turn), z, AssemblyMode::Plus);
+                    made.ok().and_then(|made| eight_points(&made, draws))
+                } else {
+                    let made = InvertedSliderCrank::from_parts([a, at], crank, offset, z, AssemblyMode::Plus);
+                    made.ok().and_then(|made| eight_points(&made, draws))
+                };
+                if let Some((points, marks)) = taken {
+                    return (Target::with_slider(points, closure).expect("different places"), marks);
+                }
+            }
+        };
+        survey(&name, kind.classes(), (count, (97 * count).div_ceil(100)), draw);
     }
 }
 
@@ -340,6 +399,9 @@ fn main() {
     }
     if part.is_empty() || part == "pivots" {
         with_pivots(words.get(1).map_or(100, |word| word.parse().expect("a number of targets")));
+    }
+    if part.is_empty() || part == "sliders" {
+        with_sliders(words.get(1).map_or(100, |word| word.parse().expect("a number of targets")));
     }
     if part.is_empty() || part == "dyads" {
         dyads(words.get(1).map_or(1000, |word| word.parse().expect("a number of targets")));
