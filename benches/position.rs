@@ -126,11 +126,11 @@ fn positions(c: &mut Criterion) {
     group.finish();
 }
 
-/// What every position of a slider-crank costs at least: a square root.
+/// The bound of a slider-crank takes the square root that every position needs, and does nothing else.
 #[derive(Clone, Copy)]
 struct Root;
 
-/// What every position of the other kinds costs at least: a square root and a division.
+/// The bound of the other kinds takes the square root and the division that every position needs, and does nothing else.
 #[derive(Clone, Copy)]
 struct RootAndDivision;
 

@@ -76,18 +76,20 @@ impl SliderKernel for Kernel {
         let ([a_x, a_y], [q_x, q_y]) = (splat(self.pivot), splat(self.line_point));
         let ([s_x, s_y], [m_x, m_y]) = (splat(self.direction), splat(self.direction_per_coupler));
         let ([w_x, w_y], crank, one) = (splat(self.offset), L::splat(-self.crank), L::splat(1.0));
+        let [along_x, along_y] = splat(self.offset.map(|w| self.t1 * w));
         let [c_x, c_y] = [a_x - crank * cos, a_y - crank * sin];
         let (v_x, v_y) = (c_x - q_x, c_y - q_y);
         let h = m_x * v_y - m_y * v_x;
         // 1 - h^2, factored for the sake of its digits near a toggle.
         let root_sq = (one - h) * (one - (-h));
-        let root = L::splat(self.t1) * root_sq.positive_part().sqrt();
+        let sine = root_sq.positive_part().sqrt();
+        let root = L::splat(self.t1) * sine;
         let [u_x, u_y] = [s_x * root - (-s_y) * h, s_y * root - s_x * h];
         let place = (s_x * v_x - (-s_y) * v_y) - L::splat(-self.coupler) * root;
         let joints = LanePosition {
             crank_pin: [c_x, c_y],
             follower_pin: [q_x - (-s_x) * place, q_y - (-s_y) * place],
-            coupler_point: [c_x - ((-w_y) * h - w_x * root), c_y - (w_x * h - w_y * root)],
+            coupler_point: [c_x - ((-w_y) * h - along_x * sine), c_y - (w_x * h - along_y * sine)],
             gap: root_sq - L::splat(-FLAT_TOLERANCE),
         };
         SliderLanes { joints, coupler: [u_x, u_y], place }

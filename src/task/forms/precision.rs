@@ -109,7 +109,7 @@ pub enum Refusal {
         /// The kind of linkages that are asked for.
         kind: LinkageKind,
     },
-    /// There are poses, and the linkages asked for have a slider.
+    /// The task has poses, and linkages with a slider are solved for through points alone.
     #[error("method = \"continuation\" finds {} through points alone, and this task has poses", plural(*kind))]
     SliderPoses {
         /// The kind of linkages that are asked for.
