@@ -447,8 +447,18 @@ pub fn ending_sentences(record: &Record) -> String {
     let used: Vec<String> =
         record.method.used.iter().map(|m| clean(m)).filter(|m| !m.is_empty()).take(12).collect();
     let used = if used.is_empty() { String::new() } else { format!(" by {}", used.join(", ")) };
+    let picks = record.picks.as_ref().map_or(0, |picks| picks.evaluations);
+    let front = record.front.as_ref().map_or(0, |front| front.evaluations);
+    // The budget is that of the search alone.
+    let others: Vec<String> = [(picks, "for the picks"), (front, "for the front")]
+        .into_iter()
+        .filter(|(evaluations, _)| *evaluations > 0)
+        .map(|(evaluations, of)| format!("{} {of}", grouped(evaluations)))
+        .collect();
+    let among =
+        if others.is_empty() { String::new() } else { format!(", among them {}", others.join(" and ")) };
     let mut text = format!(
-        "Search{used} (seed {}) ended: {}. {} of the objective, {}.",
+        "Search{used} (seed {}) ended: {}. {} of the objective{among}, {}.",
         record.seed,
         reason,
         count(record.evaluations.objective as usize, "evaluation"),
