@@ -269,6 +269,7 @@ pub mod variable_projection {
 /// Free timing: chosen by `benches/recovery`, whose targets are dense; those for sparse targets have no benchmark.
 pub mod free {
     use super::Effort;
+    use crate::synthesis::free::explorations::PerPoints;
 
     /// Number of different ends near which later rounds start.
     pub const LEADING: usize = 12;
@@ -281,6 +282,8 @@ pub mod free {
     pub const IN_NOISE: f64 = 1.5e-2;
     /// Rounds with equally good answers that suffice if the errors are noise.
     pub const NOISE_HITS: usize = 4;
+    /// The part of the evaluations of a round that is cut short, one in so many, that its ends are finished with.
+    pub const FINISHING: u64 = 4;
     /// Least number of batches for a sparse target.
     pub const LEAST_BATCHES: u64 = 3;
     /// Batches in which a round on a dense target fits only its best start further.
@@ -324,11 +327,19 @@ pub mod free {
     pub const STRICTER: (u64, u64, u64) = (4, 3, 1);
     pub const DENSE_STRICTER: (u64, u64, u64) = (8, 3, 7);
     pub const STRICT_DEG: f64 = 30.0;
-    /// Batches of each of these two explorations, before a search whose errors are neither exact nor noise may end: at
-    /// least, and at most if their own best is not believed. Chosen by the ladder test, and for dense targets by
-    /// `benches/strokes`.
+    /// The batch that explores linkages whose crank turns fully if the errors are noise.
+    pub const TURNING_IN_NOISE: u64 = 1;
+    /// The shares of the evaluations if the errors are neither noise nor nearly exact: of the explorations under the problem's own
+    /// requirements, with at least [`STRICT_DEG`], and with a crank that turns fully. Chosen by `benches/strokes` and the
+    /// ladder test.
+    pub const SHARES: PerPoints = PerPoints { first: 3, corners: 2, whole: 1 };
+    pub const STRICT_SHARES: PerPoints = PerPoints { first: 5, corners: 3, whole: 3 };
+    pub const TURNING_SHARES: PerPoints = PerPoints { first: 1, corners: 0, whole: 0 };
+    /// Batches of each stricter exploration, before a search whose errors are neither exact nor noise may end: at least, and
+    /// at most if their own best is not believed. Of a dense target so many. Chosen by the ladder test, and for dense
+    /// targets by `benches/strokes`.
     pub const CONFIRMING: (u64, u64) = (3, 12);
-    pub const DENSE_CONFIRMING: (u64, u64) = (2, 2);
+    pub const DENSE_CONFIRMING: PerPoints = PerPoints { first: 2, corners: 1, whole: 1 };
     /// Batches without a new distinct answer that end a search for further ones.
     pub const QUIET_BATCHES: u64 = 6;
     /// Number of ends kept.
@@ -354,6 +365,17 @@ pub mod free {
     /// The factor of the best merit on the explored points above which an end is not finished if one answer is wanted.
     pub const WORTH_FINISHING: f64 = 4.0;
     pub const DENSE_WORTH_FINISHING: f64 = 2.0;
+    /// The same if several answers are wanted.
+    pub const SEVERAL_WORTH_FINISHING: f64 = 9.0;
+    /// The factor of the best merit above which the last digits of an end do not matter, unless its rms error is below
+    /// `NEARLY_EXACT` sizes: it may be on its way to an exact answer.
+    pub const WORTH_DIGITS: f64 = 4.0;
+    pub const DENSE_WORTH_DIGITS: f64 = 1.3;
+    pub const NEARLY_EXACT: f64 = 1e-3;
+    /// Relative differences of merits on the explored points, which are found within some 1e-5, below which an end is counted
+    /// as another one, and below which it is not finished beside it.
+    pub const SAME_END: f64 = 3e-5;
+    pub const ALIKE_ENDS: f64 = 3e-4;
     /// The efforts of short fits and of longer ones; ends are finished by [`super::multistart::LONG_FIT`].
     pub const SHORT_FIT: Effort = Effort::of(16, 2).until(1e-4);
     /// The effort of fits further to an end on the explored points.
@@ -365,6 +387,8 @@ pub mod free {
     /// Most evaluations of a fit from a start that was led back to a type whose points cannot stray: if the type binds,
     /// the linkage is almost a change point, and not worth more.
     pub const LED_BACK_MOST: u64 = 600;
+    /// The factor of the best error up to which such a fit goes on.
+    pub const GOES_ON: f64 = 1.02;
 }
 
 /// Coarsening of dense targets with free timing: chosen by `benches/recovery`, whose targets have 60 and 360 points.
@@ -492,7 +516,7 @@ pub mod picks {
     pub const LEAST_STEP: f64 = 0.1;
     pub const STEPS: usize = 10;
     /// The evaluations of a search anew beyond the best one, the number of its answers, and the most such searches.
-    pub const SEARCH: u64 = 3000;
+    pub const SEARCH: u64 = 2000;
     pub const ANSWERS: usize = 3;
     pub const ANEW: usize = 2;
     /// Differences of the logarithm of the extent, and of the transmission angle in degrees, up to which they are the same:

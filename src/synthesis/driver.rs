@@ -167,7 +167,7 @@ pub(super) fn drive<S: Strategy>(context: Context<'_>, allowance: Allowance, sea
 
 /// Returns part `index` of the evaluations left, shared evenly, so that the budget is never exceeded whatever the parts
 /// need.
-pub(super) fn share(left: u64, parts: u64, index: u64) -> u64 {
+fn share(left: u64, parts: u64, index: u64) -> u64 {
     left / parts + u64::from(index < left % parts)
 }
 

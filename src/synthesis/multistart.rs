@@ -66,12 +66,19 @@ pub(super) struct Spender<'a> {
     /// The evaluations used.
     pub(super) cost: Evaluations,
     allowance: u64,
+    /// The best error known, beside which a fit may be worth more evaluations than others; 0 if there is none.
+    pub(super) best: f64,
 }
 
 impl<'a> Spender<'a> {
     /// Creates a spender that has used nothing of its allowance.
     pub(super) fn new(context: Context<'a>, allowance: u64) -> Self {
-        Spender { context, cost: Evaluations::default(), allowance }
+        Spender { context, cost: Evaluations::default(), allowance, best: 0.0 }
+    }
+
+    /// As [`Spender::new`] where the best error is known, or infinite if it is not.
+    pub(super) fn beside(context: Context<'a>, allowance: u64, best: f64) -> Self {
+        Spender { best: if best.is_finite() { best } else { 0.0 }, ..Spender::new(context, allowance) }
     }
 
     /// Returns the evaluations left.

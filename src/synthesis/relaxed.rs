@@ -104,8 +104,8 @@ mod tests {
     fn ends_of_a_relaxed_problem_are_led_to_an_acceptable_design() {
         let never = AtomicBool::new(false);
         let budget = Budget::new(&never, None);
-        let (asked, relaxed) = (guide("transmission_deg_min = 45"), guide(""));
-        let allowance = Allowance { limit: 2000, patience: 2000 };
+        let (asked, relaxed) = (guide("transmission_deg_min = 55"), guide(""));
+        let allowance = Allowance { limit: 6000, patience: 6000 };
         let ends = local::search(Context::new(&relaxed, &budget), allowance).candidates;
         // Ends that meet the transmission angle already are left out: the fits have to do it.
         let beyond = |end: &Candidate| {

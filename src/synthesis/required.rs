@@ -7,7 +7,7 @@
 //! a motion it can do so whatever the type, be the crank the one dyad or the other. The best acceptable linkage is often at
 //! a toggle of one of its points or at a change point.
 
-use super::constants::free::{LED_BACK_MOST, SHORT_FIT, WORTH_LEADING_BACK};
+use super::constants::free::{GOES_ON, LED_BACK_MOST, NEARLY_EXACT, SHORT_FIT, WORTH_LEADING_BACK};
 use super::motion::swapped;
 use super::multistart::{Effort, Spender, by_merit};
 use crate::mechanism::four_bar::mobility::linkage_type;
@@ -21,11 +21,19 @@ use crate::task::forms::torus::mirrored;
 pub(in crate::synthesis) const ONE_BRANCH: [LinkageType; 2] =
     [LinkageType::CrankRocker, LinkageType::DoubleCrank];
 
-/// Returns the most evaluations that a fit from a start is worth. If one branch is required and no type, only a start
-/// that was led back, or is near an end that was, aims at a type.
-pub(super) fn worth_spending(problem: &Problem, start: &Start) -> u64 {
-    let was_led_back = !problem.branch_any() && start.setting.aim.is_some() && problem.types().is_empty();
-    if was_led_back { LED_BACK_MOST } else { u64::MAX }
+/// Returns the cost of an rms error given in sizes of the target.
+pub(super) fn cost_of(problem: &Problem, rms: f64) -> f64 {
+    let task = problem.task();
+    (rms * task.size()).powi(2) * task.weights().iter().sum::<f64>()
+}
+
+/// Returns the most evaluations that a fit from a start is worth: few if it was led back, for then it ends at a change point or
+/// a toggle, and creeps along it. If one branch is required and no type, only a start that was led back, or is near an end
+/// that was, aims at a type; on a path only such a fit holds its points on one branch.
+fn worth_spending(problem: &Problem, start: &Start, effort: Effort) -> u64 {
+    let aims = !problem.branch_any() && start.setting.aim.is_some() && !problem.aims_at_types();
+    let holds = effort.on_branch && problem.task().body().is_none();
+    if aims || holds { LED_BACK_MOST } else { u64::MAX }
 }
 
 /// Returns whether the points of a start lie on circuits or branches that the problem does not allow together, or its
@@ -52,6 +60,22 @@ pub(super) fn strayed(problem: &Problem, start: &Start) -> bool {
 }
 
 impl Spender<'_> {
+    /// Fits from a start with as many evaluations as it is worth, and on from there if its end is nearly exact or as good as
+    /// the best error known.
+    pub(super) fn fit_its_worth(
+        &mut self,
+        problem: &Problem,
+        start: Start,
+        effort: Effort,
+    ) -> Option<(f64, Start)> {
+        let most = worth_spending(problem, &start, effort);
+        let (merit, end) = self.fit(problem, start, effort, most)?;
+        if most < u64::MAX && merit <= cost_of(problem, NEARLY_EXACT).max(GOES_ON * self.best) {
+            return self.fit(problem, end.clone(), effort, u64::MAX).or(Some((merit, end)));
+        }
+        Some((merit, end))
+    }
+
     /// As `fit`; if the points end on circuits or branches that the problem does not allow together, also fits from
     /// there to the nearest ends that it allows.
     pub(super) fn fit_as_required(
@@ -60,8 +84,7 @@ impl Spender<'_> {
         start: Start,
         effort: Effort,
     ) -> Option<(f64, Start)> {
-        let most = worth_spending(problem, &start);
-        let (merit, end) = self.fit(problem, start, effort, most)?;
+        let (merit, end) = self.fit_its_worth(problem, start, effort)?;
         if !strayed(problem, &end) {
             return Some((merit, end));
         }
@@ -70,17 +93,15 @@ impl Spender<'_> {
             // The more promising one first.
             let mut tried: Vec<(f64, Start)> = Vec::with_capacity(back.len());
             for start in back {
-                let most = worth_spending(problem, &start);
-                tried.extend(self.fit(problem, start, SHORT_FIT.on_branch(), most));
+                tried.extend(self.fit_its_worth(problem, start, SHORT_FIT.on_branch()));
             }
             tried.retain(|(again, _)| *again <= WORTH_LEADING_BACK * merit);
             by_merit(&mut tried, usize::MAX);
             back = tried.into_iter().map(|(_, start)| start).collect();
         }
         for start in back {
-            let most = worth_spending(problem, &start);
-            let again =
-                self.fit(problem, start, effort.on_branch(), most).filter(|(_, end)| !strayed(problem, end));
+            let again = self.fit_its_worth(problem, start, effort.on_branch());
+            let again = again.filter(|(_, end)| !strayed(problem, end));
             if again.is_some() {
                 return again;
             }

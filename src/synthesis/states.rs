@@ -64,7 +64,7 @@ pub struct FreeState {
     pub(super) evaluations: Evaluations,
     /// The least merit of each independent round.
     pub(super) best_merits: Vec<Exact>,
-    /// The stages that have begun.
+    /// The stages.
     pub(super) stages: Vec<StageState>,
     /// The ends, least merit first.
     pub(super) ends: Vec<End>,
@@ -96,6 +96,9 @@ pub(super) struct StageState {
     pub(super) finished: Vec<(Exact, Exact)>,
     /// Rounds so far.
     pub(super) index: u64,
+    /// Evaluations so far.
+    #[serde(default)]
+    pub(super) spent: u64,
     /// The least merit of each independent round on the explored points.
     #[serde(default)]
     pub(super) round_merits: Vec<Exact>,
@@ -108,6 +111,7 @@ impl StageState {
         leading: Vec::new(),
         finished: Vec::new(),
         index: 0,
+        spent: 0,
         round_merits: Vec::new(),
     };
 }

@@ -292,7 +292,8 @@ fn more_evaluations_never_make_a_guide_worse() {
 
 #[test]
 fn the_nearest_remedy_is_proposed_first() {
-    let record = run_on(2, guide(200.0, 1, 3000, &[("task.path.tolerance", "0.05")]));
+    // Of what the search finds within its evaluations the tolerance lacks a tenth, the footprint more.
+    let record = run_on(2, guide(200.0, 3, 3000, &[("task.path.tolerance", "0.07")]));
     assert!(record.candidates.iter().all(|c| !c.accepted));
     let nearest = &record.relaxations[0].set;
     assert_eq!(nearest.len(), 1);

@@ -1,15 +1,16 @@
 //! A batch of rounds: run in parallel, read in their order, followed by the fits of the ends that they share.
 //!
-//! As long as nothing acceptable is known, the evaluations left are shared evenly among the rounds, and all are read. After
-//! that the first rounds that they suffice for are read, and the others are dropped: a search with more evaluations reads
-//! the same rounds and further ones, so that its answer is no worse.
+//! The first rounds that the evaluations left suffice for are read, and the others are dropped: a search with more
+//! evaluations reads the same rounds and further ones, so that its answer is no worse. As long as nothing acceptable is
+//! known, the first round that they do not suffice for is read too, cut short.
 
-use super::parts::{Allowed, Reading, in_order};
-use super::round::{Common, Finished, Round, Setup, finished, is_same, round, unfinished};
+use super::parts::{Reading, in_order, suffice_for};
+use super::round::{Common, Finished, Round, Setup, finished, round, unfinished};
 use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Evaluations;
 use crate::synthesis::Context;
-use crate::synthesis::constants::free::{BATCH, DIFFERENT, LEADING};
+use crate::synthesis::belief::{NEARLY, SAME_OPTIMUM};
+use crate::synthesis::constants::free::{ALIKE_ENDS, BATCH, DIFFERENT, FINISHING, LEADING, SAME_END};
 use crate::synthesis::states::{End, StageState};
 use std::ops::Range;
 
@@ -27,14 +28,15 @@ pub(super) struct Batch {
 }
 
 impl Batch {
-    /// Runs the rounds of a batch, the first of which draws from the stream `first`, with at most `left` evaluations;
-    /// `stage` is the state of its stage before it. All rounds are read, cut short or not, if `all` is set.
+    /// Runs the rounds of a batch with at most `left` evaluations; `stage` is the state of its stage before it, `first` the index
+    /// of its first round in the whole search, `best` the error of the best answer so far, infinite if there is none.
     pub(super) fn run(
         context: Context<'_>,
         setup: &Setup<'_>,
         stage: &StageState,
         first: u64,
-        (left, all): (u64, bool),
+        best: f64,
+        left: u64,
     ) -> Batch {
         let mut batch = Batch {
             draws: 0,
@@ -45,18 +47,14 @@ impl Batch {
             stage: stage.clone(),
         };
         let near_ends = stage.leading.iter().map(|(_, start)| start.clone()).collect();
-        let common = Common { context, setup, first, first_of_stage: stage.index, near_ends };
+        let common = Common { context, setup, first_of_stage: stage.index, near_ends, best };
         // If ends are finished after the rounds and an exact one would end the search, one round runs before the
         // others.
         let split = setup.finishes_apart() && setup.single && first == 0;
         let waves: &[(u64, u64)] = if split { &[(0, 1), (1, BATCH)] } else { &[(0, BATCH)] };
         for &(begin, end) in waves {
-            let left = left.saturating_sub(batch.cost.objective);
-            // Shared evenly among all rounds of the batch, each with the fits that follow from it.
-            let (parts, of) = (end - begin, BATCH - begin);
-            let left = if all { left / of * parts + left % of * parts / of } else { left };
-            let is_exact = batch.wave(&common, begin..end, Allowed { left, parts, shared: all });
-            if is_exact || !(all || batch.whole) {
+            let is_exact = batch.wave(&common, begin..end, left.saturating_sub(batch.cost.objective));
+            if is_exact || !batch.whole {
                 break;
             }
         }
@@ -67,23 +65,36 @@ impl Batch {
     }
 
     /// Runs some of the rounds in parallel, then finishes the ends that they share, and reads those that the evaluations
-    /// allowed suffice for, or all if they are shared. Returns whether an exact answer is among them.
-    fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, allowed: Allowed) -> bool {
+    /// left suffice for. Returns whether an exact answer is among them.
+    fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, left: u64) -> bool {
         let setup = common.setup;
-        let (first, bar) = (wave.start, self.stage.bar);
-        let reading = Reading::new(wave.clone(), allowed.left);
-        let mut rounds: Vec<Round> =
-            in_order(wave, |index| round(common, index, bar, allowed.of(index - first), &reading));
+        let (first, bar, before) = (wave.start, self.stage.bar, self.cost.objective);
+        let reading = Reading::new(wave.clone(), left);
+        let mut rounds: Vec<Round> = in_order(wave, |index| round(common, index, bar, left, &reading));
         if !setup.finishes_apart()
             && let Some(exact) = rounds.iter().position(Round::is_exact)
         {
             // Rounds after it may have been cut short.
             rounds.truncate(exact + 1);
         }
-        self.keep_those_that_fit(&mut rounds, allowed, |_, round| round.cost.objective);
+        self.keep_those_that_fit(&mut rounds, left, |_, round| round.cost.objective);
         let mut done: Vec<Finished> = Vec::new();
         if setup.finishes_apart() {
-            done = self.finish(common, &mut rounds, allowed);
+            done = self.finish(common, &mut rounds, left);
+        }
+        let exact = done.iter().any(|done| done.exact);
+        let next = first + rounds.len() as u64;
+        self.read(setup, rounds, done);
+        if !self.whole && common.best.is_infinite() {
+            let used = self.cost.objective - before;
+            self.read_cut_short(common, next, left.saturating_sub(used));
+        }
+        exact
+    }
+
+    /// Adds the results of rounds, and of their ends that were finished after them.
+    fn read(&mut self, setup: &Setup<'_>, mut rounds: Vec<Round>, mut done: Vec<Finished>) {
+        if setup.finishes_apart() {
             let merits = done.iter().map(|done| (Exact(done.explored), Exact(done.end.merit)));
             self.stage.finished.extend(merits);
         }
@@ -92,7 +103,7 @@ impl Batch {
             self.cost += round.cost;
             if round.independent {
                 self.stage.round_merits.push(Exact(round.explored()));
-                self.best_merits.push(self.least_on_all(round));
+                self.best_merits.push(self.least_on_all(setup, round));
             }
             self.stage.bar = self.stage.bar.min(round.explored());
             done.append(&mut round.finished);
@@ -103,39 +114,28 @@ impl Batch {
                 }
             }
         }
-        let exact = done.iter().any(|done| done.exact);
         self.ends.extend(done.into_iter().map(|done| done.end));
-        exact
     }
 
     /// Fits the ends of rounds to all points, each once, up to the first exact one. Drops the rounds that the evaluations
-    /// allowed, if they are not shared, do not suffice for with the fits of their ends.
-    fn finish(&mut self, common: &Common<'_>, rounds: &mut Vec<Round>, allowed: Allowed) -> Vec<Finished> {
-        let ends = unfinished(common.setup, rounds, &self.stage);
+    /// left do not suffice for with the fits of their ends.
+    fn finish(&mut self, common: &Common<'_>, rounds: &mut Vec<Round>, left: u64) -> Vec<Finished> {
+        let ends = unfinished(common.setup, rounds, &self.stage, common.best);
         let parts = ends.len() as u64;
-        let used: u64 = rounds.iter().map(|round| round.cost.objective).sum();
-        let shared = Allowed { left: allowed.left.saturating_sub(used), parts, shared: true };
-        let allowance = |i: u64, round: &Round| {
-            if allowed.shared { shared.of(i) } else { allowed.left.saturating_sub(round.cost.objective) }
-        };
         let reading = Reading::new(0..parts, u64::MAX);
         let mut finishes: Vec<(usize, Vec<Finished>, Evaluations)> = in_order(0..parts, |i| {
             let end = &ends[i as usize];
-            let (done, cost) = finished(common, (i, end), allowance(i, &rounds[end.round]), &reading);
+            let allowance = left.saturating_sub(rounds[end.round].cost.objective);
+            let (done, cost) = finished(common, (i, end), allowance, &reading);
             (end.round, done, cost)
         });
         if let Some(exact) = finishes.iter().position(|(_, done, _)| done.iter().any(|end| end.exact)) {
             finishes.truncate(exact + 1);
         }
-        if allowed.shared {
-            let costs = finishes.iter().map(|(.., cost)| cost.objective);
-            self.whole &= shared.suffice_for(costs) == finishes.len();
-        } else {
-            self.keep_those_that_fit(rounds, allowed, |i, round| {
-                let own = finishes.iter().filter(|(round, ..)| *round == i);
-                round.cost.objective + own.map(|(.., cost)| cost.objective).sum::<u64>()
-            });
-        }
+        self.keep_those_that_fit(rounds, left, |i, round| {
+            let own = finishes.iter().filter(|(round, ..)| *round == i);
+            round.cost.objective + own.map(|(.., cost)| cost.objective).sum::<u64>()
+        });
         let mut done: Vec<Finished> = Vec::new();
         for (_, ends, cost) in finishes.into_iter().filter(|(round, ..)| *round < rounds.len()) {
             self.cost += cost;
@@ -144,26 +144,53 @@ impl Batch {
         done
     }
 
-    /// Keeps the first rounds that the evaluations allowed suffice for, or all if they are shared, and records whether
-    /// they limited any; `cost` returns the evaluations of a round.
+    /// Runs and reads a round with the evaluations left, which do not suffice for all of it. If its ends are finished
+    /// after it, a part of them is kept for that.
+    fn read_cut_short(&mut self, common: &Common<'_>, index: u64, left: u64) {
+        let setup = common.setup;
+        let apart = if setup.finishes_apart() { left / FINISHING } else { 0 };
+        let unlimited = |parts: u64| Reading::new(0..parts, u64::MAX);
+        let cut = vec![round(common, index, self.stage.bar, left - apart, &unlimited(0))];
+        let mut done: Vec<Finished> = Vec::new();
+        if setup.finishes_apart() {
+            let mut left = left.saturating_sub(cut[0].cost.objective);
+            for end in unfinished(setup, &cut, &self.stage, common.best) {
+                let (ends, cost) = finished(common, (0, &end), left, &unlimited(0));
+                left = left.saturating_sub(cost.objective);
+                self.cost += cost;
+                done.extend(ends);
+            }
+        }
+        self.read(setup, cut, done);
+    }
+
+    /// Keeps the first rounds that the evaluations left suffice for, and records whether these limited any; `cost` returns
+    /// the evaluations of a round.
     fn keep_those_that_fit(
         &mut self,
         rounds: &mut Vec<Round>,
-        allowed: Allowed,
+        left: u64,
         cost: impl Fn(usize, &Round) -> u64,
     ) {
-        let fit = allowed.suffice_for(rounds.iter().enumerate().map(|(i, round)| cost(i, round)));
+        let fit = suffice_for(left, rounds.iter().enumerate().map(|(i, round)| cost(i, round)));
         self.whole &= fit == rounds.len();
-        if !allowed.shared {
-            rounds.truncate(fit);
-        }
+        rounds.truncate(fit);
     }
 
-    /// Returns the least merit on all points of the ends of a round, whether they were finished in it or after a batch.
-    fn least_on_all(&self, round: &Round) -> f64 {
+    /// Returns the least merit on all points of the ends of a round, whether they were finished in it or after a batch. An
+    /// end that is only like one that was finished is near it.
+    fn least_on_all(&self, setup: &Setup<'_>, round: &Round) -> f64 {
         let own = round.finished.iter().map(|done| done.end.merit);
-        let shared = self.stage.finished.iter().filter_map(|(explored, whole)| {
-            round.leaders.iter().any(|(merit, _)| is_same(explored.0, *merit)).then_some(whole.0)
+        let shared = self.stage.finished.iter().flat_map(|(explored, whole)| {
+            round.leaders.iter().filter_map(|(merit, _)| {
+                let apart = (explored.0 - merit).abs() / merit;
+                let is_far = whole.0 > setup.nearly_exact;
+                if apart <= if is_far { SAME_END } else { SAME_OPTIMUM } {
+                    Some(whole.0)
+                } else {
+                    (is_far && apart <= ALIKE_ENDS).then_some(whole.0 * (1.0 + 0.5 * NEARLY))
+                }
+            })
         });
         own.chain(shared).fold(f64::INFINITY, f64::min)
     }

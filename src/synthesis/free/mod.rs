@@ -8,14 +8,16 @@
 //! Dense targets are explored in groups of points ([`super::coarse`]); now and then all points are explored, or one point
 //! of each group, to find detail that the groups' means blur. The correspondence between the points and the curve is
 //! recomputed for their ends (`reassign`), and these are fitted again for as long as that gains. The ends of a batch are
-//! finished on all points after it, each of them once however many rounds reached it. Ends whose points have strayed to
+//! finished on all points after it, each of them once however many rounds reached it; only those that can be the best, or
+//! may be on their way to an exact answer, are led to their last digits. Ends whose points have strayed to
 //! a circuit or branch that the referee will refuse are led back (`required`). Rounds run in parallel in batches of
 //! `BATCH` and are read in their order: the number of threads changes nothing but the time. Ends are judged by the
 //! referee in order of increasing error until enough of them are accepted.
 //!
-//! Some batches explore a stricter problem ([`mod@stricter`]) with the starts that a search of that problem would draw. Their
+//! Some batches explore a stricter problem ([`mod@stricter`]) as a search of that problem would, with the same starts. Their
 //! ends are finished with the stricter requirement and without it, and either can be an answer: so a looser problem
-//! meets the answers of a tighter one.
+//! meets the answers of a tighter one. If the errors are neither noise nor nearly exact, each of the explorations
+//! ([`mod@explorations`]) is given its share of the evaluations.
 //!
 //! *Stopping rule*: as many independent rounds as [`super::belief::FreeHits`] gives (rounds that start near known ends do
 //! not count) have reached the best error within `SAME_OPTIMUM`, or four or more times as many within `NEARLY`, for an
@@ -26,7 +28,7 @@
 //! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough. If neighbouring residuals are
 //! correlated, the linkage misses a shape that another linkage may have. The search then ends when the error has kept
 //! its level (within a factor `LEVEL`) for several times as many evaluations as it took to reach it: `LEVEL_TIMES` if
-//! `LEVEL_HITS` independent rounds came to that level, else `QUIET_TIMES`; so does a search of a sparse target of
+//! `LEVEL_HITS` independent rounds came to that level, `QUIET_TIMES` if one did; so does a search of a sparse target of
 //! `STRICT_LEAST` points or more. An error below `SMALL` sizes may be that
 //! of a clean curve whose own linkage is still to be found: `PATIENT_BATCHES` batches are searched at least. An exact
 //! answer needs no second hit.
@@ -35,9 +37,10 @@ pub use super::constants::free::LEAST_MATCHED;
 
 use super::atlas::Matches;
 use super::belief::{DENSE_HITS, FreeHits, NEARLY, SAME_OPTIMUM, SPARSE_HITS};
-use super::coarse::{Coarse, points_of};
+use super::coarse::points_of;
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive};
 use super::polish::{basins_wanted, promising};
+use super::required::cost_of;
 use super::starts::Starts;
 use super::states::{Counts, End, FreeState, Level, SearchState, StageState};
 use super::{Context, HitsSoFar, repeats};
@@ -48,16 +51,18 @@ use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Candidate;
 use crate::synthesis::constants::free::{
     ALIKE, BATCH, CONFIRMING, CORNERS_AT, CORNERS_EVERY, DENSE_CONFIRMING, DENSE_STRICTER, IN_NOISE, KEPT,
-    LEAST_BATCHES, LEVEL, LEVEL_HITS, LEVEL_LEAST, LEVEL_TIMES, MANY_HITS, MANY_LEAST, NOISE_HITS,
-    NOISE_LEAST, PATIENT_BATCHES, QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICT_LEAST, STRICTER,
-    WHOLE_ELSE, WHOLE_EVERY, WHOLE_IN_NOISE, WHOLE_MOST,
+    LEAST_BATCHES, LEVEL, LEVEL_HITS, LEVEL_LEAST, LEVEL_TIMES, MANY_HITS, MANY_LEAST, NEARLY_EXACT,
+    NOISE_HITS, NOISE_LEAST, PATIENT_BATCHES, QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICT_LEAST,
+    STRICTER, TURNING_IN_NOISE, WHOLE_ELSE, WHOLE_EVERY, WHOLE_IN_NOISE,
 };
 use crate::task::Problem;
 use batch::Batch;
+use explorations::{Exploration, Explored, Points, explorations};
 use round::Setup;
-use stricter::{Kind, Stricter, stricter};
+use stricter::{Kind, stricter};
 
 mod batch;
+pub(super) mod explorations;
 mod parts;
 mod round;
 mod state;
@@ -78,40 +83,17 @@ fn likeness(problem: &Problem, candidate: &Candidate) -> f64 {
     if whole > 0.0 { alike / whole } else { 1.0 }
 }
 
-/// The points and the requirements that a stage explores.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Explored {
-    /// The groups' means, or all points of a sparse target.
-    First,
-    /// All points of a dense target.
-    Whole,
-    /// One point of each group.
-    Corners,
-    /// A stricter problem.
-    Stricter(Kind),
-}
-
-/// A problem to explore, with its starts; all points if there is no coarse one.
-#[derive(Clone, Copy)]
-struct Exploration<'a> {
-    explored: Explored,
-    coarse: Option<&'a Coarse>,
-    /// The stricter problem with all points, if a stricter one is explored.
-    stricter: Option<&'a Problem>,
-    starts: &'a Starts<'a>,
-}
-
 /// The search with its state.
 struct Free<'a> {
     problem: &'a Problem,
-    coarse: Option<&'a Coarse>,
-    /// The explorations that the problem has, in the order in which their stages begin.
-    explorations: Vec<Exploration<'a>>,
+    /// The explorations that the problem has, each of them a stage, and their starts.
+    explorations: &'a [Exploration<'a>],
+    starts: &'a [Starts<'a>],
     /// Number of distinct answers wanted.
     wanted: usize,
     exact: f64,
     /// The setups of the stages that have begun.
-    setups: Vec<Setup<'a>>,
+    setups: Vec<Option<Setup<'a>>>,
     at: FreeState,
     /// The best of the judged ends that is acceptable, or would be after its polish.
     best: Option<Candidate>,
@@ -122,59 +104,23 @@ struct Free<'a> {
 /// Searches until the best is believed, the limit is reached, or the patience is at an end.
 pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found> {
     let problem = context.problem;
-    let (coarse, corners) = (Coarse::of(problem), Coarse::of_corners(problem));
     let stricter = stricter(problem);
-    let whole = Starts::new(problem);
-    let [of_groups, of_corners] =
-        [&coarse, &corners].map(|coarse| Some(Starts::new(&coarse.as_ref()?.problem)));
-    let of_stricter: Vec<Starts<'_>> = stricter.iter().map(|s| Starts::new(&s.coarse.problem)).collect();
-    let mut explorations = vec![Exploration {
-        explored: Explored::First,
-        coarse: coarse.as_ref(),
-        stricter: None,
-        starts: of_groups.as_ref().unwrap_or(&whole),
-    }];
-    if coarse.is_some() && problem.task().len() <= WHOLE_MOST {
-        explorations.push(Exploration {
-            explored: Explored::Whole,
-            coarse: None,
-            stricter: None,
-            starts: &whole,
-        });
-    }
-    if let Some((coarse, starts)) = corners.as_ref().zip(of_corners.as_ref()) {
-        explorations.push(Exploration {
-            explored: Explored::Corners,
-            coarse: Some(coarse),
-            stricter: None,
-            starts,
-        });
-    }
-    explorations.extend(stricter.iter().zip(&of_stricter).map(
-        |(Stricter { kind, problem, coarse }, starts)| Exploration {
-            explored: Explored::Stricter(*kind),
-            coarse: Some(coarse),
-            stricter: Some(problem),
-            starts,
-        },
-    ));
+    let explorations = explorations(problem, &stricter);
+    let starts: Vec<Starts<'_>> = explorations.iter().map(|e| Starts::new(e.problem())).collect();
     let mut free = Free {
         problem,
-        coarse: coarse.as_ref(),
-        explorations,
+        explorations: &explorations,
+        starts: &starts,
         wanted: basins_wanted(problem),
         exact: exact_cost(problem),
-        setups: Vec::new(),
-        at: FreeState::default(),
+        setups: explorations.iter().map(|_| None).collect(),
+        at: FreeState { stages: vec![StageState::BEGUN; explorations.len()], ..FreeState::default() },
         best: None,
         is_cut: false,
     };
-    free.begin_next_stage();
-    let points = |e: &Exploration<'_>| e.coarse.map_or(problem, |coarse| &coarse.problem).task().len();
-    let points: Vec<usize> = free.explorations.iter().map(points).collect();
+    let points: Vec<usize> = explorations.iter().map(|e| e.problem().task().len()).collect();
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().free.clone());
     if let Some(state) = earlier.filter(|state| state.is_of(problem, &points)) {
-        (1..state.stages.len()).for_each(|_| free.begin_next_stage());
         free.at = state.judged_again(problem);
         free.best = free.judge_from_the_best(context);
     }
@@ -191,13 +137,30 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
 }
 
 impl<'a> Free<'a> {
-    /// Begins the next stage that has not begun.
-    fn begin_next_stage(&mut self) {
-        let Exploration { coarse, stricter, starts, .. } = self.explorations[self.setups.len()];
+    /// Returns whether the target is explored in groups of points.
+    fn is_dense(&self) -> bool {
+        self.explorations[0].coarse.is_some()
+    }
+
+    /// Makes the setup of a stage, unless it has begun.
+    fn begin(&mut self, stage: usize) {
+        if self.setups[stage].is_some() {
+            return;
+        }
+        let Exploration { explored, of, coarse } = &self.explorations[stage];
+        let starts = &self.starts[stage];
         let matches = (starts.arc.len() >= LEAST_MATCHED).then(|| Matches::of(starts));
-        let (problem, single, exact) = (self.problem, self.wanted == 1, self.exact);
-        self.setups.push(Setup { problem, coarse, stricter, starts, matches, single, exact });
-        self.at.stages.push(StageState::BEGUN);
+        self.setups[stage] = Some(Setup {
+            problem: self.problem,
+            coarse: coarse.as_ref(),
+            stricter: explored.stricter.map(|_| *of),
+            starts,
+            first_stream: self.explorations[stage].first_stream(),
+            matches,
+            single: self.wanted == 1,
+            exact: self.exact,
+            nearly_exact: self.cost_of(NEARLY_EXACT).max(self.exact),
+        });
     }
 
     /// Returns the index of the stage of the next batch: one that is to confirm the best answer once the stopping rule
@@ -205,25 +168,35 @@ impl<'a> Free<'a> {
     fn next_stage(&mut self) -> usize {
         let stage = if self.at.confirming { self.to_confirm() } else { None };
         let stage = stage.unwrap_or_else(|| self.stage_in_turn());
-        while self.setups.len() <= stage {
-            self.begin_next_stage();
-        }
+        self.begin(stage);
         stage
     }
 
-    /// Returns the index of the stage whose turn it is: now and then all points are explored, or one point of each
-    /// group, to find detail that grouping blurs, or a stricter problem, to find linkages to which starts without its
-    /// requirement seldom lead.
+    /// Returns the index of the stage whose turn it is.
+    ///
+    /// If the errors of the best answer are neither noise nor nearly exact each stage is given its share of the evaluations. All
+    /// points and corners tell what grouping blurs; under stricter requirements fits keep away from change points, where they are long and lead to
+    /// linkages that jam. Else all points, or a stricter problem, are explored now and then.
     fn stage_in_turn(&self) -> usize {
-        let is_noise = self.is_noise();
         let batch = self.at.counts.batch;
+        let is_noise = self.is_noise();
+        let near = self.cost_of(NEARLY_EXACT);
+        let is_far = self.best.as_ref().is_some_and(|best| searched(self.problem, best) > near);
+        if is_far && !is_noise {
+            let part =
+                |i: &usize| self.at.stages[*i].spent as f64 / self.explorations[*i].explored.share() as f64;
+            return (0..self.explorations.len()).min_by(|i, j| part(i).total_cmp(&part(j))).unwrap_or(0);
+        }
         let on_all_at = if is_noise { WHOLE_IN_NOISE } else { WHOLE_ELSE };
-        let (every, strict_at, turning_at) = if self.coarse.is_some() { DENSE_STRICTER } else { STRICTER };
+        let (every, strict_at, turning_at) = if self.is_dense() { DENSE_STRICTER } else { STRICTER };
+        let own = |points: Points| Explored { points, stricter: None };
+        let under = |kind: Kind| Explored { points: Points::First, stricter: Some(kind) };
         let wanted = [
-            (Explored::Whole, batch % WHOLE_EVERY == on_all_at),
-            (Explored::Corners, !is_noise && batch % CORNERS_EVERY == CORNERS_AT),
-            (Explored::Stricter(Kind::Strict), !is_noise && batch % every == strict_at),
-            (Explored::Stricter(Kind::Turning), !is_noise && batch % every == turning_at),
+            (own(Points::Whole), batch % WHOLE_EVERY == on_all_at),
+            (own(Points::Corners), !is_noise && batch % CORNERS_EVERY == CORNERS_AT),
+            (under(Kind::Strict), !is_noise && batch % every == strict_at),
+            (under(Kind::Turning), !is_noise && batch % every == turning_at),
+            (under(Kind::Turning), is_noise && batch == TURNING_IN_NOISE),
         ];
         let place = |explored: Explored| self.explorations.iter().position(|e| e.explored == explored);
         let stage = wanted.into_iter().filter(|(_, now)| *now).find_map(|(explored, _)| place(explored));
@@ -233,18 +206,23 @@ impl<'a> Free<'a> {
     /// Returns the index of a stricter stage that is still to confirm the best answer: the one with fewer rounds of
     /// those that have neither found their own best often enough nor had their most rounds.
     fn to_confirm(&self) -> Option<usize> {
-        let rounds = |i: usize| self.at.stages.get(i).map_or(0, |stage| stage.index);
+        let rounds = |i: usize| self.at.stages[i].index;
         let is_open = |i: usize| {
-            let Some(stage) = self.at.stages.get(i) else { return true };
+            let stage = &self.at.stages[i];
             let merits = || stage.round_merits.iter().map(|merit| merit.0);
             let hits = self.hits_wanted();
             let believed = repeats::came(merits(), stage.bar, SAME_OPTIMUM, self.exact) >= hits.same
                 || repeats::came(merits(), stage.bar, NEARLY, self.exact) >= hits.near;
             let batches = stage.index / BATCH;
-            let (least, most) = if self.coarse.is_some() { DENSE_CONFIRMING } else { CONFIRMING };
+            let (least, most) = if self.is_dense() {
+                let least = DENSE_CONFIRMING.of(self.explorations[i].explored.points);
+                (least, least)
+            } else {
+                CONFIRMING
+            };
             batches < least || (!believed && batches < most)
         };
-        let is_stricter = |i: &usize| matches!(self.explorations[*i].explored, Explored::Stricter(_));
+        let is_stricter = |i: &usize| self.explorations[*i].explored.stricter.is_some();
         let open = (0..self.explorations.len()).filter(is_stricter).filter(|i| is_open(*i));
         open.min_by_key(|i| rounds(*i))
     }
@@ -259,12 +237,13 @@ impl<'a> Free<'a> {
         let again = self.within(error, LEVEL - 1.0);
         let many = again >= MANY_HITS && after(MANY_LEAST, LEVEL_TIMES);
         let several = again >= LEVEL_HITS && after(LEVEL_LEAST, LEVEL_TIMES);
-        error > self.cost_of(SMALL) && (many || several || after(QUIET_LEAST, QUIET_TIMES))
+        let once = again > 0 && after(QUIET_LEAST, QUIET_TIMES);
+        error > self.cost_of(SMALL) && (many || several || once)
     }
 
     /// Returns whether the target is dense and the errors of the best acceptable end are noise.
     fn is_noise(&self) -> bool {
-        self.coarse.is_some() && is_noise(self.problem, &self.at.ends)
+        self.is_dense() && is_noise(self.problem, &self.at.ends)
     }
 
     /// Sorts the ends and drops the worst. Only some of the refused ends are kept: they must not crowd out the accepted.
@@ -316,12 +295,11 @@ impl<'a> Free<'a> {
 
     /// Returns the cost of an rms error given in sizes of the target.
     fn cost_of(&self, rms: f64) -> f64 {
-        let task = self.problem.task();
-        (rms * task.size()).powi(2) * task.weights().iter().sum::<f64>()
+        cost_of(self.problem, rms)
     }
 
     fn hits_wanted(&self) -> FreeHits {
-        if self.coarse.is_some() { DENSE_HITS } else { SPARSE_HITS }
+        if self.is_dense() { DENSE_HITS } else { SPARSE_HITS }
     }
 
     /// Returns the number of independent rounds within a relative distance `part` of an error.
@@ -360,8 +338,9 @@ impl Strategy for Free<'_> {
     fn run(&mut self, context: Context<'_>, left: u64) -> (Self::Batch, bool) {
         let now = self.next_stage();
         let first = self.at.counts.batch * BATCH;
-        let left = (left, self.best.is_none());
-        let batch = Batch::run(context, &self.setups[now], &self.at.stages[now], first, left);
+        let setup = self.setups[now].as_ref().expect("a stage that has begun");
+        let best = self.best.as_ref().map_or(f64::INFINITY, |best| searched(self.problem, best));
+        let batch = Batch::run(context, setup, &self.at.stages[now], first, best, left);
         let whole = batch.whole;
         self.is_cut = !whole;
         ((batch, now), whole)
@@ -370,6 +349,7 @@ impl Strategy for Free<'_> {
     fn read(&mut self, context: Context<'_>, (batch, stage): Self::Batch) {
         let at = &mut self.at;
         at.stages[stage] = batch.stage;
+        at.stages[stage].spent += batch.cost.objective;
         at.counts.batch += 1;
         at.counts.draws += batch.draws;
         at.evaluations += batch.cost;
@@ -389,11 +369,11 @@ impl Strategy for Free<'_> {
             || self.within(error, NEARLY) >= hits.near
             || (is_noise && self.within(error, IN_NOISE) >= NOISE_HITS);
         let batches = self.at.counts.batch;
-        let ripe = match self.coarse {
+        let ripe = match self.is_dense() {
             _ if is_exact => believed,
-            None if believed && batches >= LEAST_BATCHES => true,
-            None if points_of(self.problem) < STRICT_LEAST => false,
-            Some(_) if is_noise && error > self.cost_of(NOISE_LEAST) => believed,
+            false if believed && batches >= LEAST_BATCHES => true,
+            false if points_of(self.problem) < STRICT_LEAST => false,
+            true if is_noise && error > self.cost_of(NOISE_LEAST) => believed,
             _ => (believed && batches >= PATIENT_BATCHES) || self.keeps_its_level(error),
         };
         self.at.confirming = false;

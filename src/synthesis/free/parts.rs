@@ -1,6 +1,6 @@
 //! Parts of a batch that run in parallel and are read in their order, within the evaluations that are left.
 
-use crate::synthesis::driver::{share, spared};
+use crate::synthesis::driver::spared;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -19,31 +19,15 @@ pub(super) fn in_order<T: Send>(parts: Range<u64>, run: impl Fn(u64) -> T + Sync
     done.into_iter().map(|(_, result)| result).collect()
 }
 
-/// The evaluations that parts which run in parallel may use.
-#[derive(Clone, Copy)]
-pub(super) struct Allowed {
-    pub(super) left: u64,
-    pub(super) parts: u64,
-    /// Whether they are shared evenly; else each part may use all of them.
-    pub(super) shared: bool,
-}
-
-impl Allowed {
-    /// Returns the evaluations that a part may use.
-    pub(super) fn of(&self, part: u64) -> u64 {
-        if self.shared { share(self.left, self.parts, part) } else { self.left }
-    }
-
-    /// Returns the number of parts from the first on whose evaluations fit into those left together, and that their
-    /// allowance did not limit.
-    pub(super) fn suffice_for(&self, costs: impl Iterator<Item = u64>) -> usize {
-        let mut sum = 0_u64;
-        let fits = |&(part, cost): &(u64, u64)| {
-            sum += cost;
-            sum <= self.left && spared(cost, self.of(part))
-        };
-        (0..).zip(costs).take_while(fits).count()
-    }
+/// Returns the number of parts from the first on whose evaluations fit into those left together, and that these did not
+/// limit.
+pub(super) fn suffice_for(left: u64, costs: impl Iterator<Item = u64>) -> usize {
+    let mut sum = 0_u64;
+    let fits = |cost: &u64| {
+        sum += cost;
+        sum <= left && spared(*cost, left)
+    };
+    costs.take_while(fits).count()
 }
 
 /// Tells parts that run in parallel, and are read in their order, whether they will be read: one that will not may stop.
@@ -88,16 +72,12 @@ mod tests {
 
     #[test]
     fn the_first_parts_that_the_evaluations_suffice_for_are_read() {
-        let fit = |left, shared, costs: &[u64]| {
-            let allowed = Allowed { left, parts: costs.len() as u64, shared };
-            allowed.suffice_for(costs.iter().copied())
-        };
-        assert_eq!(fit(1000, false, &[400, 300, 300, 1]), 3);
-        assert_eq!(fit(1000, false, &[400, 300, 301, 1]), 2, "one that is cut ends them");
-        assert_eq!(fit(1000, false, &[900, 1]), 0, "one that came near its allowance may have been cut");
-        assert_eq!(fit(10, false, &[1, 1]), 0, "too little for any");
-        assert_eq!(fit(2400, true, &[500, 1100]), 1, "the second came near its half");
-        assert_eq!(fit(1000, false, &[]), 0);
+        let fit = |left, costs: &[u64]| suffice_for(left, costs.iter().copied());
+        assert_eq!(fit(1000, &[400, 300, 300, 1]), 3);
+        assert_eq!(fit(1000, &[400, 300, 301, 1]), 2, "one that is cut ends them");
+        assert_eq!(fit(1000, &[900, 1]), 0, "one that came near its allowance may have been cut");
+        assert_eq!(fit(10, &[1, 1]), 0, "too little for any");
+        assert_eq!(fit(1000, &[]), 0);
     }
 
     #[test]

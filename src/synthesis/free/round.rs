@@ -10,13 +10,13 @@ use crate::synthesis::atlas::Matches;
 use crate::synthesis::belief::SAME_OPTIMUM;
 use crate::synthesis::coarse::Coarse;
 use crate::synthesis::constants::free::{
-    BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, DENSE_WORTH_FINISHING, JITTERED, MATCHED, MIDDLE,
-    MIDDLE_FIT, REASSIGNED, SCREEN, SHORT, SHORT_FIT, WORTH_FINISHING,
+    ALIKE_ENDS, BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, DENSE_WORTH_DIGITS, DENSE_WORTH_FINISHING,
+    JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED, SCREEN, SEVERAL_WORTH_FINISHING, SHORT, SHORT_FIT,
+    WORTH_DIGITS, WORTH_FINISHING,
 };
 use crate::synthesis::moves::{along_a_difference, near};
 use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
 use crate::synthesis::reassign::{Reassigned, reassigned};
-use crate::synthesis::required::worth_spending;
 use crate::synthesis::starts::Starts;
 use crate::synthesis::states::{End, StageState};
 use crate::task::Problem;
@@ -29,16 +29,20 @@ pub(super) struct Setup<'a> {
     /// The stricter problem with all points, if a stricter one is explored.
     pub(super) stricter: Option<&'a Problem>,
     pub(super) starts: &'a Starts<'a>,
+    /// The first index of the random streams of its rounds.
+    pub(super) first_stream: u64,
     pub(super) matches: Option<Matches>,
     /// Whether one answer is wanted: the first exact one then ends the search.
     pub(super) single: bool,
     pub(super) exact: f64,
+    /// The error up to which the last digits of every end are looked for.
+    pub(super) nearly_exact: f64,
 }
 
 impl Setup<'_> {
-    /// Returns the problem that is explored: the coarse one if there is one.
+    /// Returns the problem that is explored: the coarse one if there is one, else that with all points.
     fn explored(&self) -> &Problem {
-        self.coarse.map_or(self.problem, |coarse| &coarse.problem)
+        self.coarse.map_or(self.stricter.unwrap_or(self.problem), |coarse| &coarse.problem)
     }
 
     /// Returns whether ends are finished after their batch, each of them once. Sparse ones are finished in their
@@ -49,8 +53,18 @@ impl Setup<'_> {
 
     /// Returns whether an end with this merit on the explored points can still matter beside the best one there.
     fn is_worth_finishing(&self, merit: f64, best: f64) -> bool {
-        let factor = if self.finishes_apart() { DENSE_WORTH_FINISHING } else { WORTH_FINISHING };
-        !self.single || merit <= factor * best + self.exact
+        let factor = match (self.single, self.finishes_apart()) {
+            (true, true) => DENSE_WORTH_FINISHING,
+            (true, false) => WORTH_FINISHING,
+            (false, _) => SEVERAL_WORTH_FINISHING,
+        };
+        merit <= factor * best + self.exact
+    }
+
+    /// Returns whether the last digits of an end with this merit can matter beside the best one.
+    fn is_worth_its_digits(&self, merit: f64, best: f64) -> bool {
+        let factor = if self.finishes_apart() { DENSE_WORTH_DIGITS } else { WORTH_DIGITS };
+        merit <= (factor * best).max(self.nearly_exact)
     }
 }
 
@@ -58,11 +72,12 @@ impl Setup<'_> {
 pub(super) struct Common<'a> {
     pub(super) context: Context<'a>,
     pub(super) setup: &'a Setup<'a>,
-    /// Indices of its first round: in the whole search, for its random stream, and in its stage.
-    pub(super) first: u64,
+    /// The index of its first round in its stage.
     pub(super) first_of_stage: u64,
     /// The best different ends of the batches before, near which rounds start.
     pub(super) near_ends: Vec<Start>,
+    /// The error of the best answer of the batches before on all points, infinite if there is none.
+    pub(super) best: f64,
 }
 
 impl Common<'_> {
@@ -132,8 +147,8 @@ impl Spender<'_> {
 /// Returns the starts of a round of the batch with their promise ([`promise`]) on the explored points, and the number
 /// drawn.
 fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f64, Start)>, u64) {
-    let Common { setup, near_ends, first, first_of_stage, .. } = common;
-    let (of_search, index) = (first + round, first_of_stage + round);
+    let Common { setup, near_ends, first_of_stage, .. } = common;
+    let index = first_of_stage + round;
     let explored = setup.explored();
     let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
     let mut count = 0;
@@ -143,12 +158,11 @@ fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f6
         spender.spend(explored, 1);
         drawn.extend(promise(explored, &mut start).map(|promise| (promise, start)));
     };
-    // A stricter exploration draws as a search of the stricter problem would.
-    let drawn_as = if setup.stricter.is_some() { index } else { of_search };
-    let turn = drawn_as as usize / 2;
+    // An exploration draws the same whatever else is explored: a stricter one as a search of the stricter problem would.
+    let turn = index as usize / 2;
     // Of three independent rounds two take matches, as long as there are any.
     let first = (turn - turn / 3) * MATCHED;
-    let mut draws = stream(setup.problem.spec().solve.seed, drawn_as);
+    let mut draws = stream(setup.problem.spec().solve.seed, setup.first_stream + index);
     if !common.is_independent(round) {
         let end = &near_ends[(index / 2) as usize % near_ends.len()];
         for i in 0..JITTERED {
@@ -200,7 +214,7 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, r
         finished: Vec::new(),
         independent: common.is_independent(index),
     };
-    let mut spender = Spender::new(context, allowance);
+    let mut spender = Spender::beside(context, allowance, common.best);
     let unread = || reading.is_unread(index);
     if unread() {
         return round;
@@ -214,8 +228,7 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, r
     let spare = drawn.first().cloned();
     let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(shorts);
     for (_, start) in drawn {
-        let most = worth_spending(explored, &start);
-        fitted.extend(spender.fit(explored, start, SHORT_FIT, most));
+        fitted.extend(spender.fit_its_worth(explored, start, SHORT_FIT));
     }
     by_merit(&mut fitted, middles);
     let mut middle: Vec<(f64, Start)> = Vec::with_capacity(middles);
@@ -235,14 +248,14 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, r
     by_merit(&mut middle, middles);
     round.leaders = middle;
     if !dense {
-        let best = round.explored().min(bar);
+        let best = round.explored().min(bar).min(common.best);
         for (merit, start) in &round.leaders {
             if unread() {
                 break;
             }
             // A better one has been finished, in this round or before it.
             if setup.is_worth_finishing(*merit, best) {
-                round.finished.extend(finish(setup, (*merit, start), &mut spender));
+                round.finished.extend(finish(setup, (*merit, start), best, &mut spender));
                 if round.is_exact() {
                     break;
                 }
@@ -255,27 +268,41 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, r
 }
 
 /// Fits an end on the explored points to all points: under the stricter requirements that were explored, if there are
-/// any, and on from there without them. The first of these ends may be accepted where the second is not. Empty if its
-/// positions cannot be refined to all points.
-fn finish(setup: &Setup<'_>, (explored, start): (f64, &Start), spender: &mut Spender<'_>) -> Vec<Finished> {
+/// any, and on from there without them. The first of these ends may be accepted where the second is not. Those that can
+/// matter beside the best error known are led to their last digits: fits along a limit take most of their evaluations for
+/// these. Empty if its positions cannot be refined to all points.
+fn finish(
+    setup: &Setup<'_>,
+    (explored, start): (f64, &Start),
+    best: f64,
+    spender: &mut Spender<'_>,
+) -> Vec<Finished> {
     let start = match setup.coarse {
         None => Some(start.clone()),
         Some(coarse) => coarse.refine(setup.problem, start),
     };
-    let Some(mut start) = start else { return Vec::new() };
-    let mut all = Vec::with_capacity(2);
-    for problem in setup.stricter.into_iter().chain([setup.problem]) {
-        let end = match spender.fit_as_required(problem, start.clone(), LONG_FIT) {
-            Some(end) => Some(end),
+    let Some(start) = start else { return Vec::new() };
+    let mut further = |problem: &Problem, mut start: Start, effort: Effort| {
+        let Some(end) = spender.fit_as_required(problem, start.clone(), effort) else {
             // Out of budget: taken as it is, with its error on all points.
-            None => promise(setup.problem, &mut start).map(|merit| (merit, start.clone())),
+            return promise(setup.problem, &mut start).map(|merit| (merit, start));
         };
-        let Some(mut end) = end else { break };
-        if setup.finishes_apart() {
-            end = spender.at_best_places(problem, end, LONG_FIT);
+        Some(if setup.finishes_apart() { spender.at_best_places(problem, end, effort) } else { end })
+    };
+    let mut all = Vec::with_capacity(2);
+    // The rounds of a sparse target have fitted it to all points, if not to the last digits.
+    let (mut end, mut is_fitted) = ((explored, start), !setup.finishes_apart());
+    for problem in setup.stricter.into_iter().chain([setup.problem]) {
+        if !is_fitted {
+            let Some(fitted) = further(problem, end.1, MIDDLE_FIT) else { break };
+            end = fitted;
         }
-        start.clone_from(&end.1);
-        all.push(judged_if_exact(setup, explored, end));
+        if setup.is_worth_its_digits(end.0, best) {
+            let Some(fitted) = further(problem, end.1, LONG_FIT) else { break };
+            end = fitted;
+        }
+        is_fitted = false;
+        all.push(judged_if_exact(setup, explored, end.clone()));
     }
     all
 }
@@ -306,14 +333,21 @@ pub(super) fn unfinished<'a>(
     setup: &Setup<'_>,
     rounds: &'a [Round],
     stage: &StageState,
+    known: f64,
 ) -> Vec<Unfinished<'a>> {
-    let best = rounds.iter().map(Round::explored).fold(stage.bar, f64::min);
+    // Beside an error that is nearly exact the error that the groups' means make is not small.
+    let is_far = known > setup.nearly_exact;
+    let known = if is_far { known } else { f64::INFINITY };
+    let best = rounds.iter().map(Round::explored).fold(stage.bar, f64::min).min(known);
+    let is_met = |one: f64, other: f64| {
+        if is_far && known.is_finite() { are_alike(one, other) } else { is_same(one, other) }
+    };
     let mut out: Vec<Unfinished<'_>> = Vec::new();
     for (round, (merit, start)) in
         rounds.iter().enumerate().flat_map(|(i, round)| round.leaders.iter().map(move |end| (i, end)))
     {
-        let met = stage.finished.iter().any(|(explored, _)| is_same(explored.0, *merit))
-            || out.iter().any(|other| is_same(other.merit, *merit));
+        let met = stage.finished.iter().any(|(explored, _)| is_met(explored.0, *merit))
+            || out.iter().any(|other| is_met(other.merit, *merit));
         if !met && setup.is_worth_finishing(*merit, best) {
             out.push(Unfinished { round, merit: *merit, start });
         }
@@ -323,22 +357,28 @@ pub(super) fn unfinished<'a>(
 }
 
 /// Returns whether two merits on the explored points belong to one end.
-pub(super) fn is_same(one: f64, other: f64) -> bool {
+fn is_same(one: f64, other: f64) -> bool {
     (one - other).abs() <= SAME_OPTIMUM * other
+}
+
+/// Returns whether two merits on the explored points, of which the error is not nearly exact, are so close that one of
+/// their ends is finished for both.
+fn are_alike(one: f64, other: f64) -> bool {
+    (one - other).abs() <= ALIKE_ENDS * other
 }
 
 /// Finishes end `index` of them within its allowance, unless one before it was exact.
 pub(super) fn finished(
-    &Common { context, setup, .. }: &Common<'_>,
+    &Common { context, setup, best, .. }: &Common<'_>,
     (index, end): (u64, &Unfinished<'_>),
     allowance: u64,
     reading: &Reading,
 ) -> (Vec<Finished>, Evaluations) {
-    let mut spender = Spender::new(context, allowance);
+    let mut spender = Spender::beside(context, allowance, best);
     if reading.is_unread(index) {
         return (Vec::new(), spender.cost);
     }
-    let done = finish(setup, (end.merit, end.start), &mut spender);
+    let done = finish(setup, (end.merit, end.start), best, &mut spender);
     reading.ended(index, spender.cost.objective, done.iter().any(|done| done.exact));
     (done, spender.cost)
 }

@@ -16,9 +16,8 @@ impl FreeState {
     /// explore.
     pub(super) fn is_of(&self, problem: &Problem, points: &[usize]) -> bool {
         let n = problem.task().len();
-        let possible = (1..=points.len()).contains(&self.stages.len());
         let mut explored = self.stages.iter().zip(points);
-        possible
+        self.stages.len() == points.len()
             && self.is_counted()
             && explored.all(|(stage, n)| stage.leading.iter().all(|(_, start)| start.positions.len() == *n))
             && self.ends.iter().all(|end| end.start.positions.len() == n)

@@ -1,7 +1,7 @@
 //! Stricter problems than the one to solve. Their answers are answers of the problem too, and starts without their
 //! requirements seldom lead to some of them.
 
-use crate::synthesis::coarse::{Coarse, points_of};
+use crate::synthesis::coarse::points_of;
 use crate::synthesis::constants::free::{STRICT_DEG, STRICT_LEAST};
 use crate::synthesis::required::ONE_BRANCH;
 use crate::task::Problem;
@@ -12,8 +12,6 @@ pub(super) struct Stricter {
     pub(super) kind: Kind,
     /// The problem with all points.
     pub(super) problem: Problem,
-    /// The problem with the points that are explored: the groups' means of a dense target.
-    pub(super) coarse: Coarse,
 }
 
 /// A requirement that is added.
@@ -40,10 +38,7 @@ pub(super) fn stricter(problem: &Problem) -> Vec<Stricter> {
             Kind::Strict => spec.require.transmission_deg_min = Some(STRICT_DEG),
             Kind::Turning => spec.require.types = ONE_BRANCH.to_vec(),
         }
-        let problem = problem.with(spec).ok()?;
-        let coarse =
-            if Coarse::is_for(&problem) { Coarse::of(&problem) } else { Coarse::of_each_point(&problem) }?;
-        Some(Stricter { kind, problem, coarse })
+        Some(Stricter { kind, problem: problem.with(spec).ok()? })
     };
     let is_new = |kind: &Kind| match kind {
         Kind::Strict => !has_angle,
