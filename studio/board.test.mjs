@@ -36,6 +36,8 @@ async function drawn(page, at) {
   await page.mouse.up();
 }
 
+/** A drop, which several linkages draw: the closest of them is called so. */
+const drop = (t) => [Math.cos(t) + 0.3 * Math.cos(2 * t), 0.6 * Math.sin(t) + 0.2 * Math.sin(2 * t)];
 const egg = (t) => [0.9 * Math.cos(t) + 0.1 * Math.cos(2 * t), 0.5 * Math.sin(t)];
 const near = (one, other, part) => Math.abs(one - other) <= part * other;
 
@@ -97,7 +99,7 @@ test("the size is a number on the board; the longest link is a wish; a refusal c
     "and nothing is asked",
   );
   await asked(page);
-  await drawn(page, egg);
+  await drawn(page, drop);
   await doing(page, "done");
   const [picture, bar] = [await extent(page), await scale(page)];
   assert.match(await page.locator("#strip .quality").first().textContent(), /close: [\d.]+ % of the path/);

@@ -12,8 +12,8 @@ use linkwright::internals::synthesis::{Budget, Context};
 use linkwright::internals::task::Problem;
 use std::sync::atomic::AtomicBool;
 
-/// The error where the limit of a cost has been moved outward by `room`, fitted from the candidate.
-fn moved(problem: &Problem, candidate: &Candidate, cost: &Cost, room: f64) -> f64 {
+/// The error where the limit of a cost has been moved outward by `room`, fitted from the candidate, and the end of the fit.
+fn moved(problem: &Problem, candidate: &Candidate, cost: &Cost, room: f64) -> (f64, Candidate) {
     let demand = Demand::named(&cost.name).expect("it has a name");
     let mut spec = problem.spec().clone();
     let limits = demand.limits(&spec).expect("it has limits");
@@ -39,7 +39,7 @@ fn moved(problem: &Problem, candidate: &Candidate, cost: &Cost, room: f64) -> f6
     let end = polish(context, end, effort, u64::MAX).end.expect("it ends");
     let found = judged(&near, &end).expect("it closes");
     assert!(found.requirements.iter().all(|r| r.met), "{cost:?}: {:?}", found.requirements);
-    weighted_rms(&near, found.error.objective)
+    (weighted_rms(&near, found.error.objective), found)
 }
 
 /// Each rate of the two best candidates within 10 % of the change on solving again; gives the names that have one.
@@ -56,7 +56,11 @@ fn rates_agree(file: ProblemFile) -> Vec<String> {
             let rms = weighted_rms(&problem, candidate.error.objective);
             // A change of a thousandth of the error, within what the limit allows.
             let step = (1e-3 * rms / -rate).min(1e-2 * cost.limit.abs().max(0.1 * problem.task().size()));
-            let [out, inward] = [step, -step].map(|room| moved(&problem, candidate, cost, room));
+            let (inward, end) = moved(&problem, candidate, cost, -step);
+            // A fit may stay where it begins, at the corner of several limits: others come from further out and in.
+            let others = [-3.0, 3.0, 10.0].map(|far| moved(&problem, candidate, cost, far * step).1);
+            let out = [candidate, &end].into_iter().chain(&others);
+            let out = out.map(|from| moved(&problem, from, cost, step).0).fold(f64::INFINITY, f64::min);
             let solved = (out - inward) / (2.0 * step);
             assert!((rate - solved).abs() <= 0.1 * solved.abs(), "{name} {cost:?}: solved again {solved:e}");
             seen.push(format!("{} {}", cost.name, cost.side.as_deref().unwrap_or("")).trim().to_owned());
