@@ -329,9 +329,9 @@ pub mod free {
     pub const STRICT_DEG: f64 = 30.0;
     /// The batch that explores linkages whose crank turns fully if the errors are noise.
     pub const TURNING_IN_NOISE: u64 = 1;
-    /// The shares of the evaluations if the errors are neither noise nor nearly exact: of the explorations under the problem's own
-    /// requirements, with at least [`STRICT_DEG`], and with a crank that turns fully. Chosen by `benches/strokes` and the
-    /// ladder test.
+    /// The shares of the evaluations if the errors are neither noise nor nearly exact: of the explorations under the
+    /// problem's own requirements, with at least [`STRICT_DEG`], and with a crank that turns fully. Chosen by
+    /// `benches/strokes` and the ladder test.
     pub const SHARES: PerPoints = PerPoints { first: 3, corners: 2, whole: 1 };
     pub const STRICT_SHARES: PerPoints = PerPoints { first: 5, corners: 3, whole: 3 };
     pub const TURNING_SHARES: PerPoints = PerPoints { first: 1, corners: 0, whole: 0 };

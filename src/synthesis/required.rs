@@ -27,9 +27,9 @@ pub(super) fn cost_of(problem: &Problem, rms: f64) -> f64 {
     (rms * task.size()).powi(2) * task.weights().iter().sum::<f64>()
 }
 
-/// Returns the most evaluations that a fit from a start is worth: few if it was led back, for then it ends at a change point or
-/// a toggle, and creeps along it. If one branch is required and no type, only a start that was led back, or is near an end
-/// that was, aims at a type; on a path only such a fit holds its points on one branch.
+/// Returns the most evaluations that a fit from a start is worth: few if it was led back, for then it ends at a change
+/// point or a toggle, and creeps along it. If one branch is required and no type, only a start that was led back, or is
+/// near an end that was, aims at a type; on a path only such a fit holds its points on one branch.
 fn worth_spending(problem: &Problem, start: &Start, effort: Effort) -> u64 {
     let aims = !problem.branch_any() && start.setting.aim.is_some() && !problem.aims_at_types();
     let holds = effort.on_branch && problem.task().body().is_none();

@@ -4,7 +4,7 @@ use crate::common::{bytes, is_thorough, job, literature, load, root, run_on};
 use linkwright::internals::app::job::run::{Context, run};
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::judge::verify::verify;
-use linkwright::internals::record::{Reason, Record};
+use linkwright::internals::record::{Change, Reason, Record, Relaxation};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -290,16 +290,38 @@ fn more_evaluations_never_make_a_guide_worse() {
     assert!(least < 0.065, "{least}");
 }
 
+/// The greatest change of a limit in a remedy, in parts of the limit, or of a box's greater side.
+fn change(remedy: &Relaxation) -> f64 {
+    let numbers = |text: String| -> Vec<f64> {
+        let items = text.trim_matches(['[', ']']).split(',').map(|item| item.trim().parse());
+        items.collect::<Result<_, _>>().unwrap_or_else(|e| panic!("{text}: {e}"))
+    };
+    let of = |set: &Change| {
+        let (from, to) = (numbers(set.from.to_string()), numbers(set.to.to_string()));
+        let scale = if let [x0, y0, x1, y1] = from[..] { (x1 - x0).max(y1 - y0) } else { from[0] };
+        from.iter().zip(to).map(|(from, to)| (to - from).abs() / scale).fold(0.0, f64::max)
+    };
+    remedy.set.iter().map(of).fold(0.0, f64::max)
+}
+
 #[test]
 fn the_nearest_remedy_is_proposed_first() {
-    // Of what the search finds within its evaluations the tolerance lacks a tenth, the footprint more.
-    let record = run_on(2, guide(200.0, 3, 3000, &[("task.path.tolerance", "0.07")]));
-    assert!(record.candidates.iter().all(|c| !c.accepted));
-    let nearest = &record.relaxations[0].set;
-    assert_eq!(nearest.len(), 1);
-    assert_eq!(nearest[0].key, "task.path.tolerance");
-    // The nearest candidate is within it, and it is rounded to what reads well.
-    let worst = record.candidates[0].error.max;
-    let to: f64 = nearest[0].to.to_string().parse().expect("a number");
-    assert!(to >= worst && to <= 1.1 * worst, "{to} for {worst}");
+    let (mut several, mut is_tolerance) = (0, 0);
+    for (seed, tolerance) in [(1, "0.05"), (2, "0.07"), (3, "0.05"), (3, "0.07")] {
+        let record = run_on(2, guide(200.0, seed, 3000, &[("task.path.tolerance", tolerance)]));
+        assert!(record.candidates.iter().all(|c| !c.accepted));
+        let remedies = &record.relaxations;
+        several += usize::from(remedies.len() > 1);
+        assert!(remedies.iter().all(|remedy| remedy.set.len() == 1), "{remedies:?}");
+        assert!(remedies.windows(2).all(|two| change(&two[0]) <= change(&two[1])), "{remedies:?}");
+        is_tolerance += usize::from(remedies[0].set[0].key == "task.path.tolerance");
+        // The nearest candidate is within the tolerance, and it is rounded to what reads well.
+        let of_tolerance = remedies.iter().map(|remedy| &remedy.set[0]);
+        let of_tolerance = of_tolerance.filter(|set| set.key == "task.path.tolerance").collect::<Vec<_>>();
+        let [set] = of_tolerance[..] else { panic!("{remedies:?}") };
+        let worst = record.candidates[0].error.max;
+        let to: f64 = set.to.to_string().parse().expect("a number");
+        assert!(to >= worst && to <= 1.1 * worst, "{to} for {worst}");
+    }
+    assert!(several >= 2 && (1..4).contains(&is_tolerance), "{several} {is_tolerance}");
 }

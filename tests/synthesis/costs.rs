@@ -42,6 +42,14 @@ fn moved(problem: &Problem, candidate: &Candidate, cost: &Cost, room: f64) -> (f
     (weighted_rms(&near, found.error.objective), found)
 }
 
+/// The least error where the limit has been moved by `room`, fitted from the candidate and from its fits further out and in,
+/// which are `step` apart or more: at the corner of several limits a fit may stay where it begins.
+fn solved_again(problem: &Problem, candidate: &Candidate, cost: &Cost, (room, step): (f64, f64)) -> f64 {
+    let others = [-3.0, -1.0, 3.0, 10.0].map(|far| moved(problem, candidate, cost, far * step).1);
+    let starts = [candidate].into_iter().chain(&others);
+    starts.map(|from| moved(problem, from, cost, room).0).fold(f64::INFINITY, f64::min)
+}
+
 /// Each rate of the two best candidates within 10 % of the change on solving again; gives the names that have one.
 fn rates_agree(file: ProblemFile) -> Vec<String> {
     let problem = Problem::new(file.spec.clone()).expect("it is one");
@@ -56,11 +64,8 @@ fn rates_agree(file: ProblemFile) -> Vec<String> {
             let rms = weighted_rms(&problem, candidate.error.objective);
             // A change of a thousandth of the error, within what the limit allows.
             let step = (1e-3 * rms / -rate).min(1e-2 * cost.limit.abs().max(0.1 * problem.task().size()));
-            let (inward, end) = moved(&problem, candidate, cost, -step);
-            // A fit may stay where it begins, at the corner of several limits: others come from further out and in.
-            let others = [-3.0, 3.0, 10.0].map(|far| moved(&problem, candidate, cost, far * step).1);
-            let out = [candidate, &end].into_iter().chain(&others);
-            let out = out.map(|from| moved(&problem, from, cost, step).0).fold(f64::INFINITY, f64::min);
+            let [out, inward] =
+                [step, -step].map(|room| solved_again(&problem, candidate, cost, (room, step)));
             let solved = (out - inward) / (2.0 * step);
             assert!((rate - solved).abs() <= 0.1 * solved.abs(), "{name} {cost:?}: solved again {solved:e}");
             seen.push(format!("{} {}", cost.name, cost.side.as_deref().unwrap_or("")).trim().to_owned());

@@ -5,7 +5,7 @@
 //! known, the first round that they do not suffice for is read too, cut short.
 
 use super::parts::{Reading, in_order, suffice_for};
-use super::round::{Common, Finished, Round, Setup, finished, round, unfinished};
+use super::round::{Common, Finished, Round, Setup, apart, finished, round, unfinished};
 use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Evaluations;
 use crate::synthesis::Context;
@@ -28,8 +28,8 @@ pub(super) struct Batch {
 }
 
 impl Batch {
-    /// Runs the rounds of a batch with at most `left` evaluations; `stage` is the state of its stage before it, `first` the index
-    /// of its first round in the whole search, `best` the error of the best answer so far, infinite if there is none.
+    /// Runs the rounds of a batch with at most `left` evaluations; `stage` is the state of its stage before it, `first` the
+    /// index of its first round in the whole search, `best` the error of the best answer so far, infinite if there is none.
     pub(super) fn run(
         context: Context<'_>,
         setup: &Setup<'_>,
@@ -148,14 +148,14 @@ impl Batch {
     /// after it, a part of them is kept for that.
     fn read_cut_short(&mut self, common: &Common<'_>, index: u64, left: u64) {
         let setup = common.setup;
-        let apart = if setup.finishes_apart() { left / FINISHING } else { 0 };
-        let unlimited = |parts: u64| Reading::new(0..parts, u64::MAX);
-        let cut = vec![round(common, index, self.stage.bar, left - apart, &unlimited(0))];
+        let for_ends = if setup.finishes_apart() { left / FINISHING } else { 0 };
+        let alone = || Reading::new(0..0, u64::MAX);
+        let cut = vec![round(common, index, self.stage.bar, left - for_ends, &alone())];
         let mut done: Vec<Finished> = Vec::new();
         if setup.finishes_apart() {
             let mut left = left.saturating_sub(cut[0].cost.objective);
             for end in unfinished(setup, &cut, &self.stage, common.best) {
-                let (ends, cost) = finished(common, (0, &end), left, &unlimited(0));
+                let (ends, cost) = finished(common, (0, &end), left, &alone());
                 left = left.saturating_sub(cost.objective);
                 self.cost += cost;
                 done.extend(ends);
@@ -181,15 +181,17 @@ impl Batch {
     /// end that is only like one that was finished is near it.
     fn least_on_all(&self, setup: &Setup<'_>, round: &Round) -> f64 {
         let own = round.finished.iter().map(|done| done.end.merit);
-        let shared = self.stage.finished.iter().flat_map(|(explored, whole)| {
-            round.leaders.iter().filter_map(|(merit, _)| {
-                let apart = (explored.0 - merit).abs() / merit;
-                let is_far = whole.0 > setup.nearly_exact;
-                if apart <= if is_far { SAME_END } else { SAME_OPTIMUM } {
-                    Some(whole.0)
-                } else {
-                    (is_far && apart <= ALIKE_ENDS).then_some(whole.0 * (1.0 + 0.5 * NEARLY))
-                }
+        let shared = self.stage.finished.iter().flat_map(|&(Exact(explored), Exact(whole))| {
+            // Nearly exact ends are told apart to the last.
+            let (same, alike) = if whole > setup.nearly_exact {
+                (SAME_END, ALIKE_ENDS)
+            } else {
+                (SAME_OPTIMUM, SAME_OPTIMUM)
+            };
+            round.leaders.iter().filter_map(move |(merit, _)| match apart(explored, *merit) {
+                apart if apart <= same => Some(whole),
+                apart if apart <= alike => Some(whole * (1.0 + 0.5 * NEARLY)),
+                _ => None,
             })
         });
         own.chain(shared).fold(f64::INFINITY, f64::min)

@@ -59,6 +59,7 @@ use crate::task::Problem;
 use batch::Batch;
 use explorations::{Exploration, Explored, Points, explorations};
 use round::Setup;
+use std::cell::OnceCell;
 use stricter::{Kind, stricter};
 
 mod batch;
@@ -92,8 +93,8 @@ struct Free<'a> {
     /// Number of distinct answers wanted.
     wanted: usize,
     exact: f64,
-    /// The setups of the stages that have begun.
-    setups: Vec<Option<Setup<'a>>>,
+    /// The setups of the stages, made when they begin: the atlas takes its time.
+    setups: Vec<OnceCell<Setup<'a>>>,
     at: FreeState,
     /// The best of the judged ends that is acceptable, or would be after its polish.
     best: Option<Candidate>,
@@ -113,7 +114,7 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
         starts: &starts,
         wanted: basins_wanted(problem),
         exact: exact_cost(problem),
-        setups: explorations.iter().map(|_| None).collect(),
+        setups: explorations.iter().map(|_| OnceCell::new()).collect(),
         at: FreeState { stages: vec![StageState::BEGUN; explorations.len()], ..FreeState::default() },
         best: None,
         is_cut: false,
@@ -142,47 +143,42 @@ impl<'a> Free<'a> {
         self.explorations[0].coarse.is_some()
     }
 
-    /// Makes the setup of a stage, unless it has begun.
-    fn begin(&mut self, stage: usize) {
-        if self.setups[stage].is_some() {
-            return;
-        }
-        let Exploration { explored, of, coarse } = &self.explorations[stage];
-        let starts = &self.starts[stage];
-        let matches = (starts.arc.len() >= LEAST_MATCHED).then(|| Matches::of(starts));
-        self.setups[stage] = Some(Setup {
-            problem: self.problem,
-            coarse: coarse.as_ref(),
-            stricter: explored.stricter.map(|_| *of),
-            starts,
-            first_stream: self.explorations[stage].first_stream(),
-            matches,
-            single: self.wanted == 1,
-            exact: self.exact,
-            nearly_exact: self.cost_of(NEARLY_EXACT).max(self.exact),
-        });
+    /// Returns the setup of a stage.
+    fn setup(&self, stage: usize) -> &Setup<'a> {
+        self.setups[stage].get_or_init(|| {
+            let exploration = &self.explorations[stage];
+            let starts = &self.starts[stage];
+            Setup {
+                problem: self.problem,
+                coarse: exploration.coarse.as_ref(),
+                stricter: exploration.explored.stricter.map(|_| exploration.of),
+                starts,
+                first_stream: exploration.first_stream(),
+                matches: (starts.arc.len() >= LEAST_MATCHED).then(|| Matches::of(starts)),
+                single: self.wanted == 1,
+                exact: self.exact,
+                nearly_exact: self.nearly_exact(),
+            }
+        })
     }
 
     /// Returns the index of the stage of the next batch: one that is to confirm the best answer once the stopping rule
     /// is met, else the stage in turn.
-    fn next_stage(&mut self) -> usize {
+    fn next_stage(&self) -> usize {
         let stage = if self.at.confirming { self.to_confirm() } else { None };
-        let stage = stage.unwrap_or_else(|| self.stage_in_turn());
-        self.begin(stage);
-        stage
+        stage.unwrap_or_else(|| self.stage_in_turn())
     }
 
     /// Returns the index of the stage whose turn it is.
     ///
-    /// If the errors of the best answer are neither noise nor nearly exact each stage is given its share of the evaluations. All
-    /// points and corners tell what grouping blurs; under stricter requirements fits keep away from change points, where they are long and lead to
-    /// linkages that jam. Else all points, or a stricter problem, are explored now and then.
+    /// If the errors of the best answer are neither noise nor nearly exact each stage is given its share of the
+    /// evaluations. All points and corners tell what grouping blurs; under stricter requirements fits keep away from change
+    /// points, where they are long and lead to linkages that jam. Else all points, or a stricter problem, are explored now
+    /// and then.
     fn stage_in_turn(&self) -> usize {
         let batch = self.at.counts.batch;
         let is_noise = self.is_noise();
-        let near = self.cost_of(NEARLY_EXACT);
-        let is_far = self.best.as_ref().is_some_and(|best| searched(self.problem, best) > near);
-        if is_far && !is_noise {
+        if self.best.is_some() && self.best_error() > self.nearly_exact() && !is_noise {
             let part =
                 |i: &usize| self.at.stages[*i].spent as f64 / self.explorations[*i].explored.share() as f64;
             return (0..self.explorations.len()).min_by(|i, j| part(i).total_cmp(&part(j))).unwrap_or(0);
@@ -298,6 +294,16 @@ impl<'a> Free<'a> {
         cost_of(self.problem, rms)
     }
 
+    /// Returns the error up to which an answer is nearly exact.
+    fn nearly_exact(&self) -> f64 {
+        self.cost_of(NEARLY_EXACT).max(self.exact)
+    }
+
+    /// Returns the error of the best answer, infinite if there is none.
+    fn best_error(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |best| searched(self.problem, best))
+    }
+
     fn hits_wanted(&self) -> FreeHits {
         if self.is_dense() { DENSE_HITS } else { SPARSE_HITS }
     }
@@ -338,8 +344,7 @@ impl Strategy for Free<'_> {
     fn run(&mut self, context: Context<'_>, left: u64) -> (Self::Batch, bool) {
         let now = self.next_stage();
         let first = self.at.counts.batch * BATCH;
-        let setup = self.setups[now].as_ref().expect("a stage that has begun");
-        let best = self.best.as_ref().map_or(f64::INFINITY, |best| searched(self.problem, best));
+        let (setup, best) = (self.setup(now), self.best_error());
         let batch = Batch::run(context, setup, &self.at.stages[now], first, best, left);
         let whole = batch.whole;
         self.is_cut = !whole;

@@ -339,9 +339,8 @@ pub(super) fn unfinished<'a>(
     let is_far = known > setup.nearly_exact;
     let known = if is_far { known } else { f64::INFINITY };
     let best = rounds.iter().map(Round::explored).fold(stage.bar, f64::min).min(known);
-    let is_met = |one: f64, other: f64| {
-        if is_far && known.is_finite() { are_alike(one, other) } else { is_same(one, other) }
-    };
+    let same = if known.is_finite() { ALIKE_ENDS } else { SAME_OPTIMUM };
+    let is_met = |one: f64, other: f64| apart(one, other) <= same;
     let mut out: Vec<Unfinished<'_>> = Vec::new();
     for (round, (merit, start)) in
         rounds.iter().enumerate().flat_map(|(i, round)| round.leaders.iter().map(move |end| (i, end)))
@@ -356,15 +355,9 @@ pub(super) fn unfinished<'a>(
     out
 }
 
-/// Returns whether two merits on the explored points belong to one end.
-fn is_same(one: f64, other: f64) -> bool {
-    (one - other).abs() <= SAME_OPTIMUM * other
-}
-
-/// Returns whether two merits on the explored points, of which the error is not nearly exact, are so close that one of
-/// their ends is finished for both.
-fn are_alike(one: f64, other: f64) -> bool {
-    (one - other).abs() <= ALIKE_ENDS * other
+/// Returns the relative distance of a merit on the explored points from another one.
+pub(super) fn apart(one: f64, other: f64) -> f64 {
+    if one == other { 0.0 } else { (one - other).abs() / other }
 }
 
 /// Finishes end `index` of them within its allowance, unless one before it was exact.
