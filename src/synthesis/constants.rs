@@ -280,8 +280,13 @@ pub mod free {
     /// Relative difference below which errors of noise are equally good: the noise of n points has a sum of squares
     /// with a relative spread of (2/n)^(1/2).
     pub const IN_NOISE: f64 = 1.5e-2;
-    /// Rounds with equally good answers that suffice if the errors are noise.
+    /// Rounds with equally good answers that suffice if the errors are noise and several answers are wanted, and the least
+    /// number of evaluations then. Chosen by the ladder test.
     pub const NOISE_HITS: usize = 4;
+    pub const NOISE_EVALUATIONS: u64 = 60_000;
+    /// Such rounds if one answer is wanted; two suffice if so many independent rounds have run.
+    pub const NOISE_HITS_FOR_ONE: usize = 3;
+    pub const NOISE_ROUNDS_FOR_ONE: usize = 16;
     /// The part of the evaluations of a round that is cut short, one in so many, that its ends are finished with.
     pub const FINISHING: u64 = 4;
     /// Least number of batches for a sparse target.

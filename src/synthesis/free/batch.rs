@@ -50,7 +50,7 @@ impl Batch {
         let common = Common { context, setup, first_of_stage: stage.index, near_ends, best };
         // If ends are finished after the rounds and an exact one would end the search, one round runs before the
         // others.
-        let split = setup.finishes_apart() && setup.single && first == 0;
+        let split = common.finishes_apart() && setup.single && first == 0;
         let waves: &[(u64, u64)] = if split { &[(0, 1), (1, BATCH)] } else { &[(0, BATCH)] };
         for &(begin, end) in waves {
             let is_exact = batch.wave(&common, begin..end, left.saturating_sub(batch.cost.objective));
@@ -71,7 +71,7 @@ impl Batch {
         let (first, bar, before) = (wave.start, self.stage.bar, self.cost.objective);
         let reading = Reading::new(wave.clone(), left);
         let mut rounds: Vec<Round> = in_order(wave, |index| round(common, index, bar, left, &reading));
-        if !setup.finishes_apart()
+        if !common.finishes_apart()
             && let Some(exact) = rounds.iter().position(Round::is_exact)
         {
             // Rounds after it may have been cut short.
@@ -79,7 +79,7 @@ impl Batch {
         }
         self.keep_those_that_fit(&mut rounds, left, |_, round| round.cost.objective);
         let mut done: Vec<Finished> = Vec::new();
-        if setup.finishes_apart() {
+        if common.finishes_apart() {
             done = self.finish(common, &mut rounds, left);
         }
         let exact = done.iter().any(|done| done.exact);
@@ -94,10 +94,8 @@ impl Batch {
 
     /// Adds the results of rounds, and of their ends that were finished after them.
     fn read(&mut self, setup: &Setup<'_>, mut rounds: Vec<Round>, mut done: Vec<Finished>) {
-        if setup.finishes_apart() {
-            let merits = done.iter().map(|done| (Exact(done.explored), Exact(done.end.merit)));
-            self.stage.finished.extend(merits);
-        }
+        let merits = done.iter().map(|done| (Exact(done.explored), Exact(done.end.merit)));
+        self.stage.finished.extend(merits);
         for round in &mut rounds {
             self.draws += round.draws;
             self.cost += round.cost;
@@ -148,11 +146,11 @@ impl Batch {
     /// after it, a part of them is kept for that.
     fn read_cut_short(&mut self, common: &Common<'_>, index: u64, left: u64) {
         let setup = common.setup;
-        let for_ends = if setup.finishes_apart() { left / FINISHING } else { 0 };
+        let for_ends = if common.finishes_apart() { left / FINISHING } else { 0 };
         let alone = || Reading::new(0..0, u64::MAX);
         let cut = vec![round(common, index, self.stage.bar, left - for_ends, &alone())];
         let mut done: Vec<Finished> = Vec::new();
-        if setup.finishes_apart() {
+        if common.finishes_apart() {
             let mut left = left.saturating_sub(cut[0].cost.objective);
             for end in unfinished(setup, &cut, &self.stage, common.best) {
                 let (ends, cost) = finished(common, (0, &end), left, &alone());

@@ -25,12 +25,13 @@
 //! `QUIET_BATCHES` batches brought no new one. Unless the errors are exact or noise, the stricter problems confirm it
 //! with batches of their own. Sparse targets are searched through `LEAST_BATCHES` batches at least, so that rounds
 //! near known ends get their turn. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
-//! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough. If neighbouring residuals are
-//! correlated, the linkage misses a shape that another linkage may have. The search then ends when the error has kept
-//! its level (within a factor `LEVEL`) for several times as many evaluations as it took to reach it: `LEVEL_TIMES` if
-//! `LEVEL_HITS` independent rounds came to that level, `QUIET_TIMES` if one did; so does a search of a sparse target of
-//! `STRICT_LEAST` points or more. An error below `SMALL` sizes may be that
-//! of a clean curve whose own linkage is still to be found: `PATIENT_BATCHES` batches are searched at least. An exact
+//! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough, after `NOISE_EVALUATIONS` at least:
+//! so the best of several answers is worth comparing with that of another problem. If one answer is wanted, fewer are
+//! enough. If neighbouring residuals are correlated, the linkage misses a shape that another linkage may have. The search
+//! then ends when the error has kept its level (within a factor `LEVEL`) for several times as many evaluations as it took
+//! to reach it: `LEVEL_TIMES` if `LEVEL_HITS` independent rounds came to that level, `QUIET_TIMES` if one did; so does a
+//! search of a sparse target of `STRICT_LEAST` points or more. An error below `SMALL` sizes may be that of a clean curve
+//! whose own linkage is still to be found: `PATIENT_BATCHES` batches are searched at least. An exact
 //! answer needs no second hit.
 
 pub use super::constants::free::LEAST_MATCHED;
@@ -52,8 +53,9 @@ use crate::record::Candidate;
 use crate::synthesis::constants::free::{
     ALIKE, BATCH, CONFIRMING, CORNERS_AT, CORNERS_EVERY, DENSE_CONFIRMING, DENSE_STRICTER, IN_NOISE, KEPT,
     LEAST_BATCHES, LEVEL, LEVEL_HITS, LEVEL_LEAST, LEVEL_TIMES, MANY_HITS, MANY_LEAST, NEARLY_EXACT,
-    NOISE_HITS, NOISE_LEAST, PATIENT_BATCHES, QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICT_LEAST,
-    STRICTER, TURNING_IN_NOISE, WHOLE_ELSE, WHOLE_EVERY, WHOLE_IN_NOISE,
+    NOISE_EVALUATIONS, NOISE_HITS, NOISE_HITS_FOR_ONE, NOISE_LEAST, NOISE_ROUNDS_FOR_ONE, PATIENT_BATCHES,
+    QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICT_LEAST, STRICTER, TURNING_IN_NOISE, WHOLE_ELSE,
+    WHOLE_EVERY, WHOLE_IN_NOISE,
 };
 use crate::task::Problem;
 use batch::Batch;
@@ -237,6 +239,20 @@ impl<'a> Free<'a> {
         error > self.cost_of(SMALL) && (many || several || once)
     }
 
+    /// Returns whether enough independent rounds have come to equally good answers, the errors of the best being noise.
+    fn is_believed_in_noise(&self, error: f64) -> bool {
+        let hits = self.within(error, IN_NOISE);
+        if self.wanted > 1 {
+            return hits >= NOISE_HITS;
+        }
+        hits >= NOISE_HITS_FOR_ONE || (hits > 1 && self.at.best_merits.len() >= NOISE_ROUNDS_FOR_ONE)
+    }
+
+    /// Returns whether a search whose errors are noise has had the evaluations that several answers are worth.
+    fn is_long_enough_in_noise(&self) -> bool {
+        self.wanted == 1 || self.at.evaluations.objective >= NOISE_EVALUATIONS
+    }
+
     /// Returns whether the target is dense and the errors of the best acceptable end are noise.
     fn is_noise(&self) -> bool {
         self.is_dense() && is_noise(self.problem, &self.at.ends)
@@ -372,13 +388,15 @@ impl Strategy for Free<'_> {
         let is_noise = self.is_noise();
         let believed = self.within(error, SAME_OPTIMUM) >= hits.same
             || self.within(error, NEARLY) >= hits.near
-            || (is_noise && self.within(error, IN_NOISE) >= NOISE_HITS);
+            || (is_noise && self.is_believed_in_noise(error));
         let batches = self.at.counts.batch;
         let ripe = match self.is_dense() {
             _ if is_exact => believed,
             false if believed && batches >= LEAST_BATCHES => true,
             false if points_of(self.problem) < STRICT_LEAST => false,
-            true if is_noise && error > self.cost_of(NOISE_LEAST) => believed,
+            true if is_noise && error > self.cost_of(NOISE_LEAST) => {
+                believed && self.is_long_enough_in_noise()
+            }
             _ => (believed && batches >= PATIENT_BATCHES) || self.keeps_its_level(error),
         };
         self.at.confirming = false;

@@ -8,11 +8,11 @@ use crate::record::{Candidate, Evaluations};
 use crate::synthesis::Context;
 use crate::synthesis::atlas::Matches;
 use crate::synthesis::belief::SAME_OPTIMUM;
-use crate::synthesis::coarse::Coarse;
+use crate::synthesis::coarse::{Coarse, points_of};
 use crate::synthesis::constants::free::{
     ALIKE_ENDS, BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, DENSE_WORTH_DIGITS, DENSE_WORTH_FINISHING,
     JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED, SCREEN, SEVERAL_WORTH_FINISHING, SHORT, SHORT_FIT,
-    WORTH_DIGITS, WORTH_FINISHING,
+    STRICT_LEAST, WORTH_DIGITS, WORTH_FINISHING,
 };
 use crate::synthesis::moves::{along_a_difference, near};
 use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
@@ -45,15 +45,14 @@ impl Setup<'_> {
         self.coarse.map_or(self.stricter.unwrap_or(self.problem), |coarse| &coarse.problem)
     }
 
-    /// Returns whether ends are finished after their batch, each of them once. Sparse ones are finished in their
-    /// rounds: the first exact answer ends a batch.
-    pub(super) fn finishes_apart(&self) -> bool {
+    /// Returns whether the target is dense.
+    pub(super) fn is_dense(&self) -> bool {
         Coarse::is_for(self.problem)
     }
 
     /// Returns whether an end with this merit on the explored points can still matter beside the best one there.
     fn is_worth_finishing(&self, merit: f64, best: f64) -> bool {
-        let factor = match (self.single, self.finishes_apart()) {
+        let factor = match (self.single, self.is_dense()) {
             (true, true) => DENSE_WORTH_FINISHING,
             (true, false) => WORTH_FINISHING,
             (false, _) => SEVERAL_WORTH_FINISHING,
@@ -63,7 +62,7 @@ impl Setup<'_> {
 
     /// Returns whether the last digits of an end with this merit can matter beside the best one.
     fn is_worth_its_digits(&self, merit: f64, best: f64) -> bool {
-        let factor = if self.finishes_apart() { DENSE_WORTH_DIGITS } else { WORTH_DIGITS };
+        let factor = if self.is_dense() { DENSE_WORTH_DIGITS } else { WORTH_DIGITS };
         merit <= (factor * best).max(self.nearly_exact)
     }
 }
@@ -81,6 +80,14 @@ pub(super) struct Common<'a> {
 }
 
 impl Common<'_> {
+    /// Returns whether ends are finished after their batch, each of them once. On a sparse target of few points, or one whose
+    /// best error is nearly exact, they are finished in their rounds: the first exact answer ends a batch.
+    pub(super) fn finishes_apart(&self) -> bool {
+        let setup = self.setup;
+        let is_far = self.best.is_finite() && self.best > setup.nearly_exact;
+        setup.is_dense() || (is_far && points_of(setup.problem) >= STRICT_LEAST)
+    }
+
     /// Returns whether a round of the batch is independent: it uses no results of others.
     fn is_independent(&self, round: u64) -> bool {
         self.near_ends.is_empty() || (self.first_of_stage + round).is_multiple_of(2)
@@ -219,7 +226,7 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, r
     if unread() {
         return round;
     }
-    let (explored, dense) = (setup.explored(), setup.finishes_apart());
+    let (explored, dense) = (setup.explored(), setup.is_dense());
     let (mut drawn, draws) = drawn(common, index, &mut spender);
     round.draws = draws;
     let first_look = dense && setup.coarse.is_some() && common.first_of_stage + index < DENSE_BATCHES * BATCH;
@@ -247,7 +254,7 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, r
     }
     by_merit(&mut middle, middles);
     round.leaders = middle;
-    if !dense {
+    if !common.finishes_apart() {
         let best = round.explored().min(bar).min(common.best);
         for (merit, start) in &round.leaders {
             if unread() {
@@ -287,11 +294,11 @@ fn finish(
             // Out of budget: taken as it is, with its error on all points.
             return promise(setup.problem, &mut start).map(|merit| (merit, start));
         };
-        Some(if setup.finishes_apart() { spender.at_best_places(problem, end, effort) } else { end })
+        Some(if setup.is_dense() { spender.at_best_places(problem, end, effort) } else { end })
     };
     let mut all = Vec::with_capacity(2);
     // The rounds of a sparse target have fitted it to all points, if not to the last digits.
-    let (mut end, mut is_fitted) = ((explored, start), !setup.finishes_apart());
+    let (mut end, mut is_fitted) = ((explored, start), !setup.is_dense());
     for problem in setup.stricter.into_iter().chain([setup.problem]) {
         if !is_fitted {
             let Some(fitted) = further(problem, end.1, MIDDLE_FIT) else { break };
