@@ -9,10 +9,11 @@
 //! of each group, to find detail that the groups' means blur. The correspondence between the points and the curve is
 //! recomputed for their ends (`reassign`), and these are fitted again for as long as that gains. The ends of a batch are
 //! finished on all points after it, each of them once however many rounds reached it; only those that can be the best, or
-//! may be on their way to an exact answer, are led to their last digits. Ends whose points have strayed to
-//! a circuit or branch that the referee will refuse are led back (`required`). Rounds run in parallel in batches of
-//! `BATCH` and are read in their order: the number of threads changes nothing but the time. Ends are judged by the
-//! referee in order of increasing error until enough of them are accepted.
+//! may be on their way to an exact answer, are led to their last digits. So are the ends of a sparse target of `STRICT_LEAST`
+//! points or more once an answer is known that is far from exact; those of other sparse targets are finished in their
+//! rounds. Ends whose points have strayed to a circuit or branch that the referee will refuse are led back (`required`).
+//! Rounds run in parallel in batches of `BATCH` and are read in their order: the number of threads changes nothing but the
+//! time. Ends are judged by the referee in order of increasing error until enough of them are accepted.
 //!
 //! Some batches explore a stricter problem ([`mod@stricter`]) as a search of that problem would, with the same starts. Their
 //! ends are finished with the stricter requirement and without it, and either can be an answer: so a looser problem
