@@ -39,7 +39,6 @@ pub use super::constants::free::LEAST_MATCHED;
 
 use super::atlas::Matches;
 use super::belief::{DENSE_HITS, FreeHits, NEARLY, SAME_OPTIMUM, SPARSE_HITS};
-use super::coarse::points_of;
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive};
 use super::polish::{basins_wanted, promising};
 use super::required::cost_of;
@@ -55,15 +54,15 @@ use crate::synthesis::constants::free::{
     ALIKE, BATCH, CONFIRMING, CORNERS_AT, CORNERS_EVERY, DENSE_CONFIRMING, DENSE_STRICTER, IN_NOISE, KEPT,
     LEAST_BATCHES, LEVEL, LEVEL_HITS, LEVEL_LEAST, LEVEL_TIMES, MANY_HITS, MANY_LEAST, NEARLY_EXACT,
     NOISE_EVALUATIONS, NOISE_HITS, NOISE_HITS_FOR_ONE, NOISE_LEAST, NOISE_ROUNDS_FOR_ONE, PATIENT_BATCHES,
-    QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICT_LEAST, STRICTER, TURNING_IN_NOISE, WHOLE_ELSE,
-    WHOLE_EVERY, WHOLE_IN_NOISE,
+    QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICTER, TURNING_IN_NOISE, WHOLE_ELSE, WHOLE_EVERY,
+    WHOLE_IN_NOISE,
 };
 use crate::task::Problem;
 use batch::Batch;
 use explorations::{Exploration, Explored, Points, explorations};
 use round::Setup;
 use std::cell::OnceCell;
-use stricter::{Kind, stricter};
+use stricter::{Kind, has_many_points, stricter};
 
 mod batch;
 pub(super) mod explorations;
@@ -394,7 +393,7 @@ impl Strategy for Free<'_> {
         let ripe = match self.is_dense() {
             _ if is_exact => believed,
             false if believed && batches >= LEAST_BATCHES => true,
-            false if points_of(self.problem) < STRICT_LEAST => false,
+            false if !has_many_points(self.problem) => false,
             true if is_noise && error > self.cost_of(NOISE_LEAST) => {
                 believed && self.is_long_enough_in_noise()
             }

@@ -2,17 +2,18 @@
 //! ends.
 
 use super::parts::Reading;
+use super::stricter::has_many_points;
 use crate::judge::rank::searched;
 use crate::numbers::arithmetic::streams::{stream, uniform};
 use crate::record::{Candidate, Evaluations};
 use crate::synthesis::Context;
 use crate::synthesis::atlas::Matches;
 use crate::synthesis::belief::SAME_OPTIMUM;
-use crate::synthesis::coarse::{Coarse, points_of};
+use crate::synthesis::coarse::Coarse;
 use crate::synthesis::constants::free::{
     ALIKE_ENDS, BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, DENSE_WORTH_DIGITS, DENSE_WORTH_FINISHING,
     JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED, SCREEN, SEVERAL_WORTH_FINISHING, SHORT, SHORT_FIT,
-    STRICT_LEAST, WORTH_DIGITS, WORTH_FINISHING,
+    WORTH_DIGITS, WORTH_FINISHING,
 };
 use crate::synthesis::moves::{along_a_difference, near};
 use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
@@ -85,7 +86,7 @@ impl Common<'_> {
     pub(super) fn finishes_apart(&self) -> bool {
         let setup = self.setup;
         let is_far = self.best.is_finite() && self.best > setup.nearly_exact;
-        setup.is_dense() || (is_far && points_of(setup.problem) >= STRICT_LEAST)
+        setup.is_dense() || (is_far && has_many_points(setup.problem))
     }
 
     /// Returns whether a round of the batch is independent: it uses no results of others.

@@ -23,11 +23,16 @@ pub(super) enum Kind {
     Turning,
 }
 
+/// Returns whether a target has points enough for stricter problems to be explored.
+pub(super) fn has_many_points(problem: &Problem) -> bool {
+    points_of(problem) >= STRICT_LEAST
+}
+
 /// Returns the stricter problems that are not asked for already; none if the motion may pass toggles, which no linkage
 /// of them does, or if the target has few points.
 pub(super) fn stricter(problem: &Problem) -> Vec<Stricter> {
     let require = &problem.spec().require;
-    if require.branch == OnePolicy::Any || points_of(problem) < STRICT_LEAST {
+    if require.branch == OnePolicy::Any || !has_many_points(problem) {
         return Vec::new();
     }
     let has_angle = require.transmission_deg_min.is_some_and(|asked| asked >= STRICT_DEG);
