@@ -136,21 +136,28 @@ test("a point is dragged for six seconds: the linkage that is shown follows, and
 test("a closer linkage is offered while one is held, and taken on a click", async () => {
   const { page, said, context, end } = await begun(home);
   await doing(page, "done");
-  // What the studio finds while the hand rests: one that is half as far off.
+  // What the studio finds while the hand rests: one that is half as far off as the one that is held, which need not be
+  // the closest of those found since.
   let better = false;
+  let held;
+  let place;
   await page.routeWebSocket(/live/, (socket) => {
     const server = socket.connectToServer();
     server.onMessage((text) => {
       const answer = JSON.parse(text);
-      const [first] = answer.candidates;
-      if (better && first) {
-        const { linkage } = first;
+      const shown = answer.candidates.find(({ number }) => number === held);
+      if (better && shown) {
+        const { linkage } = shown;
         const other = { ...linkage, A: [linkage.A[0] - 90, linkage.A[1]], c: linkage.c * 1.7, t1: -linkage.t1 };
-        answer.candidates.unshift({ ...first, number: 99_999, rms: first.rms / 2, accepted: true, linkage: other });
+        answer.candidates.unshift({ ...shown, number: 99_999, rms: shown.rms / 2, accepted: true, linkage: other });
+        place = answer.candidates.indexOf(shown);
       }
       socket.send(JSON.stringify(answer));
     });
-    socket.onMessage((text) => server.send(text));
+    socket.onMessage((text) => {
+      held = JSON.parse(text).held ?? held;
+      server.send(text);
+    });
   });
   await page.reload();
   await doing(page, "done");
@@ -162,7 +169,7 @@ test("a closer linkage is offered while one is held, and taken on a click", asyn
   await page.mouse.move(x, y - 12);
   await page.waitForSelector("#closer:not([hidden])");
   assert.match(await page.locator("#closer").textContent(), /a closer one: −50 %/);
-  assert.deepEqual(await page.locator(".pick[aria-pressed=true] strong").allTextContents(), ["Linkage 2"]);
+  assert.deepEqual(await page.locator(".pick[aria-pressed=true] strong").allTextContents(), [`Linkage ${place + 1}`]);
   await page.evaluate(() => document.querySelector("#closer").click());
   assert.deepEqual(await page.locator(".pick[aria-pressed=true] strong").allTextContents(), ["Linkage 1"]);
   assert.equal(await page.locator("#board .leaving").count(), 1, "the one before fades");
