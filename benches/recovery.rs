@@ -10,6 +10,7 @@
 //!     --time-limit S      seconds of a search at most (none)
 //!     --order any         the points in any order (required)
 //!     --curve I           curve I of each class alone
+//!     --search-alone      no advice: the evaluations are those of the search, as the times are always
 //!     --show              every curve on its own line, with what went wrong
 //! ```
 //!
@@ -124,6 +125,7 @@ struct Arguments {
     time_limit_s: Option<f64>,
     order: OrderPolicy,
     noises: Vec<f64>,
+    advice: bool,
     only: Option<u64>,
     show: bool,
 }
@@ -138,6 +140,7 @@ impl Arguments {
             time_limit_s: None,
             order: OrderPolicy::Required,
             noises: vec![0.0, NOISE],
+            advice: true,
             only: None,
             show: false,
         };
@@ -158,6 +161,7 @@ impl Arguments {
                 }
                 "--clean" => arguments.noises = vec![0.0],
                 "--noisy" => arguments.noises = vec![NOISE],
+                "--search-alone" => arguments.advice = false,
                 "--curve" => arguments.only = Some(value().parse().expect("a whole number")),
                 "--show" => arguments.show = true,
                 other if other.starts_with('-') => panic!("{other} is no argument of this bench"),
@@ -227,6 +231,7 @@ fn problem(class: &Class, traced: &Traced, points: &[Complex], seed: u64, with: 
             candidates: 1,
             evaluations: with.evaluations,
             time_limit_s: with.time_limit_s,
+            advice: with.advice,
             ..SolveSpec::default()
         },
     }

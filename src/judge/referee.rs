@@ -209,8 +209,8 @@ impl Course {
         Course { direction, range: [low, high], jumps: back.map(|(_, j)| j).collect() }
     }
 
-    /// Returns the course in the direction in which the parameter travels less in total; it is in order if that is less
-    /// than once around.
+    /// Returns the course in the direction in which the parameter travels less in total; it is in order if that is at most
+    /// once around: the last point may be where the first one is, as any point may be where the one before it is.
     fn through(parameter: &[f64], whole: bool) -> Course {
         let along = |direction: f64| {
             let step = |w: &[f64]| step_along(w[1] - w[0], direction, ORDER_TOLERANCE);
@@ -221,7 +221,7 @@ impl Course {
         let (direction, (total, steps)) =
             if backward.0 < forward.0 { (-1.0, backward) } else { (1.0, forward) };
         let mut jumps = Vec::new();
-        if total >= TAU {
+        if total > TAU + ORDER_TOLERANCE {
             jumps.extend(steps.iter().zip(1..).filter(|(step, _)| **step > PI).map(|(_, j)| j));
             if jumps.is_empty() {
                 jumps.push(parameter.len() - 1);

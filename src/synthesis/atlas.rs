@@ -75,6 +75,7 @@ pub(super) type OnArc = Normal<ON_ARC>;
 impl Even {
     /// Returns the relative residual of a target fitted by similarity to this curve, for each shift of the first point;
     /// `ahead`: in the same direction, else reversed.
+    #[inline(always)]
     pub(super) fn misfits(&self, target: &Even, ahead: bool) -> [f32; EVEN] {
         // Twice around, so that every shift is a contiguous range.
         let mut around = [[0.0f32; 2 * EVEN]; 2];
@@ -92,7 +93,11 @@ impl Even {
                 im[shift] += x[shift] * ty - y[shift] * tx;
             }
         }
-        std::array::from_fn(|shift| 1.0 - (re[shift] * re[shift] + im[shift] * im[shift]))
+        let mut misfits = [0.0f32; EVEN];
+        for shift in 0..EVEN {
+            misfits[shift] = 1.0 - (re[shift] * re[shift] + im[shift] * im[shift]);
+        }
+        misfits
     }
 }
 
@@ -106,7 +111,6 @@ struct Entry {
     /// Assembly sign t1, if the crank turns fully.
     assembly: f64,
     arc: Option<InputArc>,
-    descriptor: Descriptor,
     even: Even,
 }
 
@@ -332,7 +336,7 @@ fn near_change_point(stream: &mut Stream, ratios: &Ratios) -> Option<(Ratios, Li
     Some((ratios, kind))
 }
 
-fn draw(stream: &mut Stream) -> Option<Entry> {
+fn draw(stream: &mut Stream) -> Option<(Entry, Descriptor)> {
     let kind = KINDS[below(stream, KINDS.len())];
     let assembly = if below(stream, 2) == 0 { 1.0 } else { -1.0 };
     let which = below(stream, 2) as u8;
@@ -352,23 +356,53 @@ fn draw(stream: &mut Stream) -> Option<Entry> {
         Some(mobility.arc(Circuit { index: which % mobility.circuits().max(1) })?)
     };
     let even = Normal([[0.0; EVEN]; 2]);
-    let mut entry = Entry { kind, ratios, offset, assembly, arc, descriptor: [0.0; 2 * HARMONICS], even };
+    let mut entry = Entry { kind, ratios, offset, assembly, arc, even };
     let points = entry.trace()?.even();
-    entry.descriptor = descriptor(&points)?;
+    let descriptor = descriptor(&points)?;
     entry.even = Even::of(&points)?;
-    Some(entry)
+    Some((entry, descriptor))
 }
 
-fn atlas() -> &'static [Entry] {
-    static ATLAS: OnceLock<Vec<Entry>> = OnceLock::new();
+/// The entries, with what is compared with every target in a form that is compared fast.
+struct Atlas {
+    entries: Vec<Entry>,
+    kinds: Vec<LinkageType>,
+    descriptors: SideBySide<{ 2 * HARMONICS }>,
+}
+
+/// `K` numbers of each of many items, those of [`LANES`] items side by side: so their sums become vector instructions, each
+/// in the order in which that of one item would be added.
+struct SideBySide<const K: usize> {
+    blocks: Vec<[[f32; LANES]; K]>,
+    count: usize,
+}
+
+/// The items that are side by side.
+const LANES: usize = 16;
+
+impl<const K: usize> SideBySide<K> {
+    fn of(items: impl Iterator<Item = [f32; K]>) -> Self {
+        let items: Vec<[f32; K]> = items.collect();
+        let block = |items: &[[f32; K]]| {
+            std::array::from_fn(|k| std::array::from_fn(|lane| items.get(lane).map_or(0.0, |item| item[k])))
+        };
+        SideBySide { blocks: items.chunks(LANES).map(block).collect(), count: items.len() }
+    }
+}
+
+fn atlas() -> &'static Atlas {
+    static ATLAS: OnceLock<Atlas> = OnceLock::new();
     once(&ATLAS, || {
-        let chunk = |index: usize| -> Vec<Entry> {
+        let chunk = |index: usize| -> Vec<(Entry, Descriptor)> {
             let mut draws = stream(SEED, index as u64);
             (0..CHUNK).filter_map(|_| draw(&mut draws)).collect()
         };
-        (0..ENTRIES / CHUNK).into_par_iter().flat_map_iter(chunk).collect()
+        let drawn: Vec<(Entry, Descriptor)> =
+            (0..ENTRIES / CHUNK).into_par_iter().flat_map_iter(chunk).collect();
+        let descriptors = SideBySide::of(drawn.iter().map(|(_, descriptor)| *descriptor));
+        let entries: Vec<Entry> = drawn.into_iter().map(|(entry, _)| entry).collect();
+        Atlas { kinds: entries.iter().map(|entry| entry.kind).collect(), entries, descriptors }
     })
-    .as_slice()
 }
 
 /// An arc of an entry's curve.
@@ -380,7 +414,12 @@ struct Arc {
     span: f32,
     /// Whether the arc stays on one branch (assembly).
     one_branch: bool,
-    points: OnArc,
+}
+
+/// The arcs, with their points ([`OnArc`]) in a form that is compared fast.
+struct Arcs {
+    arcs: Vec<Arc>,
+    points: SideBySide<{ 2 * ON_ARC }>,
 }
 
 /// Number of points on an arc.
@@ -391,7 +430,7 @@ const ARCS: usize = 3;
 const SPANS: (f64, f64) = (0.1, 0.97);
 
 impl Arc {
-    fn of(index: usize, entry: &Entry, traced: &Traced, stream: &mut Stream) -> Option<Arc> {
+    fn of(index: usize, entry: &Entry, traced: &Traced, stream: &mut Stream) -> Option<(Arc, OnArc)> {
         let begin = uniform(stream, 0.0, 1.0);
         let span = uniform(stream, SPANS.0, SPANS.1);
         let mut points = [Complex::new(0.0, 0.0); ON_ARC];
@@ -405,13 +444,15 @@ impl Arc {
             (1..=24).all(|m| half(begin + span * f64::from(m) / 24.0) == first)
         };
         let points = Normal::of(&points)?;
-        Some(Arc { entry: index as u32, begin: begin as f32, span: span as f32, one_branch, points })
+        Some((Arc { entry: index as u32, begin: begin as f32, span: span as f32, one_branch }, points))
     }
+}
 
-    /// Returns the relative residual of a target after the best similarity, for the arc in the target's direction and
-    /// reversed.
-    fn misfits(&self, target: &OnArc) -> [f32; 2] {
-        arc_misfits(&self.points, target)
+impl OnArc {
+    /// Returns the x coordinates followed by the y coordinates.
+    fn flat(&self) -> [f32; 2 * ON_ARC] {
+        let Normal([x, y]) = self;
+        std::array::from_fn(|k| if k < ON_ARC { x[k] } else { y[k - ON_ARC] })
     }
 }
 
@@ -426,10 +467,66 @@ pub(super) fn arc_misfits(Normal([x, y]): &OnArc, Normal([tx, ty]): &OnArc) -> [
     [ahead, back].map(|z| 1.0 - (z[0] * z[0] + z[1] * z[1]))
 }
 
-fn arcs() -> &'static [Arc] {
-    static ARC_ATLAS: OnceLock<Vec<Arc>> = OnceLock::new();
+/// Returns for each arc the relative residual of a target, as [`arc_misfits`] and to the same bits.
+fn arcs_apart(arcs: &SideBySide<{ 2 * ON_ARC }>, Normal([tx, ty]): &OnArc) -> Vec<[f32; 2]> {
+    let mut apart = Vec::with_capacity(LANES * arcs.blocks.len());
+    vectorised(
+        #[inline(always)]
+        || {
+            for points in &arcs.blocks {
+                let (x, y) = points.split_at(ON_ARC);
+                let (mut ahead, mut back) = ([[0.0f32; LANES]; 2], [[0.0f32; LANES]; 2]);
+                for m in 0..ON_ARC {
+                    let r = ON_ARC - 1 - m;
+                    for i in 0..LANES {
+                        ahead[0][i] = ahead[0][i] + x[m][i] * tx[m] + y[m][i] * ty[m];
+                        ahead[1][i] = ahead[1][i] + x[m][i] * ty[m] - y[m][i] * tx[m];
+                        back[0][i] = back[0][i] + x[r][i] * tx[m] + y[r][i] * ty[m];
+                        back[1][i] = back[1][i] + x[r][i] * ty[m] - y[r][i] * tx[m];
+                    }
+                }
+                for i in 0..LANES {
+                    let of = |[x, y]: &[[f32; LANES]; 2]| 1.0 - (x[i] * x[i] + y[i] * y[i]);
+                    apart.push([of(&ahead), of(&back)]);
+                }
+            }
+        },
+    );
+    apart.truncate(arcs.count);
+    apart
+}
+
+/// Returns for each entry the squared distance of its descriptor from the wanted one, in the same direction or reversed,
+/// whichever is less.
+fn descriptors_apart(descriptors: &SideBySide<{ 2 * HARMONICS }>, wanted: &Descriptor) -> Vec<f32> {
+    let mut apart = Vec::with_capacity(LANES * descriptors.blocks.len());
+    vectorised(
+        #[inline(always)]
+        || {
+            for d in &descriptors.blocks {
+                let (mut same, mut reversed) = ([0.0f32; LANES], [0.0f32; LANES]);
+                for k in 0..2 * HARMONICS {
+                    let other = (k + HARMONICS) % (2 * HARMONICS);
+                    for i in 0..LANES {
+                        let (one, two) = (d[k][i] - wanted[k], d[other][i] - wanted[k]);
+                        same[i] += one * one;
+                        reversed[i] += two * two;
+                    }
+                }
+                for i in 0..LANES {
+                    apart.push(same[i].min(reversed[i]));
+                }
+            }
+        },
+    );
+    apart.truncate(descriptors.count);
+    apart
+}
+
+fn arcs() -> &'static Arcs {
+    static ARC_ATLAS: OnceLock<Arcs> = OnceLock::new();
     once(&ARC_ATLAS, || {
-        let of_chunk = |(chunk, entries): (usize, &[Entry])| -> Vec<Arc> {
+        let of_chunk = |(chunk, entries): (usize, &[Entry])| -> Vec<(Arc, OnArc)> {
             let mut draws = stream(SEED + 1, chunk as u64);
             let mut out = Vec::with_capacity(ARCS * entries.len());
             for (i, entry) in entries.iter().enumerate() {
@@ -440,9 +537,11 @@ fn arcs() -> &'static [Arc] {
             }
             out
         };
-        atlas().par_chunks(CHUNK).enumerate().flat_map_iter(of_chunk).collect()
+        let drawn: Vec<(Arc, OnArc)> =
+            atlas().entries.par_chunks(CHUNK).enumerate().flat_map_iter(of_chunk).collect();
+        let points = SideBySide::of(drawn.iter().map(|(_, points)| points.flat()));
+        Arcs { arcs: drawn.into_iter().map(|(arc, _)| arc).collect(), points }
     })
-    .as_slice()
 }
 
 /// An entry fitted to a target by similarity.
@@ -503,21 +602,29 @@ impl Matches {
         let target = Normal::of(&even)?;
         let types = problem.types();
         let [with, against] = [1.0, -1.0].map(|sense| problem.directions().contains(&sense));
+        let Arcs { arcs, points: of_arcs } = arcs();
         let usable = |arc: &Arc| {
             (arc.one_branch || problem.branch_any())
-                && (types.is_empty() || types.contains(&atlas()[arc.entry as usize].kind))
+                && (types.is_empty() || types.contains(&atlas().kinds[arc.entry as usize]))
         };
-        let apart = |(index, arc): (usize, &Arc)| {
-            let [ahead, back] = arc.misfits(&target);
+        let misfits = arcs_apart(of_arcs, &target);
+        let apart = |index: usize| {
+            let [ahead, back] = misfits[index];
             let reversed = if with && against { back < ahead } else { !with };
             if reversed { (back, index, -1.0) } else { (ahead, index, 1.0) }
         };
-        let near = nearest(arcs().iter().enumerate().filter(|(_, arc)| usable(arc)).map(apart).collect());
+        let near = nearest((0..arcs.len()).filter(|index| usable(&arcs[*index])).map(apart).collect());
         let lay = |&(misfit, index, direction): &(f32, usize, f64)| {
-            let arc = &arcs()[index];
+            let arc = &arcs[index];
             let (begin, span) = (f64::from(arc.begin), f64::from(arc.span));
             let begin = if direction > 0.0 { begin } else { begin + span };
-            Laid { entry: &atlas()[arc.entry as usize], begin, span, direction, misfit: f64::from(misfit) }
+            Laid {
+                entry: &atlas().entries[arc.entry as usize],
+                begin,
+                span,
+                direction,
+                misfit: f64::from(misfit),
+            }
         };
         Some(near.iter().map(lay).collect())
     }
@@ -529,32 +636,34 @@ impl Matches {
         let even = Traced::of(points.to_vec())?.even();
         let (wanted, target) = (descriptor(&even)?, Even::of(&even)?);
         let types = problem.types();
-        let usable = |entry: &Entry| {
-            (types.is_empty() || types.contains(&entry.kind)) && (entry.arc.is_none() || problem.branch_any())
+        let Atlas { entries, kinds, descriptors } = atlas();
+        let usable = |index: usize| {
+            (types.is_empty() || types.contains(&kinds[index]))
+                && (kinds[index].input_turns_fully() || problem.branch_any())
         };
-        let apart = |entry: &Entry| -> f32 {
-            let d = &entry.descriptor;
-            let (mut same, mut reversed) = (0.0, 0.0);
-            for k in 0..2 * HARMONICS {
-                same += (d[k] - wanted[k]).powi(2);
-                reversed += (d[(k + HARMONICS) % (2 * HARMONICS)] - wanted[k]).powi(2);
-            }
-            same.min(reversed)
-        };
-        let usable = atlas().iter().enumerate().filter(|(_, entry)| usable(entry));
-        let near = nearest(usable.map(|(index, entry)| (apart(entry), index, entry)).collect());
-        let lay = |(_, _, entry): (f32, usize, &'static Entry)| {
-            let along = |&direction: &f64| {
-                let misfits = entry.even.misfits(&target, direction > 0.0).into_iter().map(f64::from);
-                misfits.enumerate().map(move |(shift, misfit)| {
+        let apart = descriptors_apart(descriptors, &wanted);
+        let near = (0..entries.len()).filter(|index| usable(*index)).map(|i| (apart[i], i, &entries[i]));
+        let near = nearest(near.collect());
+        let mut laid: Vec<Laid> = Vec::with_capacity(near.len());
+        vectorised(
+            #[inline(always)]
+            || {
+                for &(_, _, entry) in &near {
+                    let mut best = (f32::INFINITY, 0, 1.0);
+                    for &direction in problem.directions() {
+                        let misfits = entry.even.misfits(&target, direction > 0.0);
+                        for (shift, misfit) in misfits.iter().enumerate() {
+                            if *misfit < best.0 {
+                                best = (*misfit, shift, direction);
+                            }
+                        }
+                    }
+                    let (misfit, shift, direction) = best;
                     let begin = shift as f64 / EVEN as f64;
-                    Laid { entry, begin, span: 1.0, direction, misfit }
-                })
-            };
-            let laid = problem.directions().iter().flat_map(along);
-            laid.min_by(|one, other| one.misfit.total_cmp(&other.misfit))
-        };
-        let mut laid: Vec<Laid> = near.into_iter().filter_map(lay).collect();
+                    laid.push(Laid { entry, begin, span: 1.0, direction, misfit: f64::from(misfit) });
+                }
+            },
+        );
         laid.sort_by(|one, other| one.misfit.total_cmp(&other.misfit));
         Some(laid)
     }
@@ -575,5 +684,40 @@ impl Matches {
             positions.push(laid.entry.at(parameter)?);
         }
         starts.from_positions(&laid.entry.ratios, laid.entry.kind, laid.direction, &positions)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_side_by_side_give_the_bits_of_one_at_a_time() {
+        // More than two blocks, the last one not full.
+        const COUNT: usize = 2 * LANES + 3;
+        let mut draws = stream(7, 0);
+        let mut arc = || {
+            let points: Vec<Complex> = (0..ON_ARC)
+                .map(|_| Complex::new(uniform(&mut draws, -1.0, 1.0), uniform(&mut draws, -1.0, 1.0)))
+                .collect();
+            OnArc::of(&points).expect("the points differ")
+        };
+        let (target, arcs): (OnArc, Vec<OnArc>) = (arc(), (0..COUNT).map(|_| arc()).collect());
+        let apart = arcs_apart(&SideBySide::of(arcs.iter().map(OnArc::flat)), &target);
+        let one_at_a_time: Vec<[f32; 2]> = arcs.iter().map(|arc| arc_misfits(arc, &target)).collect();
+        assert_eq!(apart, one_at_a_time);
+
+        let mut descriptor =
+            || -> Descriptor { std::array::from_fn(|_| uniform(&mut draws, 0.0, 1.0) as f32) };
+        let (wanted, descriptors) = (descriptor(), (0..COUNT).map(|_| descriptor()).collect::<Vec<_>>());
+        let one_at_a_time = descriptors.iter().map(|own| {
+            let along = |from: usize| {
+                let differ = |k: usize| own[(k + from) % (2 * HARMONICS)] - wanted[k];
+                (0..2 * HARMONICS).fold(0.0_f32, |sum, k| sum + differ(k) * differ(k))
+            };
+            along(0).min(along(HARMONICS))
+        });
+        let apart = descriptors_apart(&SideBySide::of(descriptors.iter().copied()), &wanted);
+        assert_eq!(apart, one_at_a_time.collect::<Vec<_>>());
     }
 }

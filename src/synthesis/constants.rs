@@ -277,6 +277,8 @@ pub mod free {
     pub const DIFFERENT: f64 = 1e-3;
     /// Rounds that run in parallel before any is read.
     pub const BATCH: u64 = 8;
+    /// Rounds of the first batch after which a search for one answer may end if the errors are noise.
+    pub const HALF_BATCH: u64 = 4;
     /// Relative difference below which errors of noise are equally good: the noise of n points has a sum of squares
     /// with a relative spread of (2/n)^(1/2).
     pub const IN_NOISE: f64 = 1.5e-2;
@@ -287,6 +289,10 @@ pub mod free {
     /// Such rounds if one answer is wanted; two suffice if so many independent rounds have run.
     pub const NOISE_HITS_FOR_ONE: usize = 3;
     pub const NOISE_ROUNDS_FOR_ONE: usize = 16;
+    /// The part of the sum of squares that the points of groups scatter about their means, above which it is noise; and the
+    /// most ends that are finished after a wave of rounds then. Chosen by `benches/recovery`.
+    pub const NOISE_SCATTER: f64 = 0.3;
+    pub const FINISHED_IN_NOISE: usize = 3;
     /// The part of the evaluations of a round that is cut short, one in so many, that its ends are finished with.
     pub const FINISHING: u64 = 4;
     /// Least number of batches for a sparse target.

@@ -251,6 +251,28 @@ fn both_assemblies_of_a_rocking_input_are_two_branches_of_a_circuit() {
 }
 
 #[test]
+fn a_last_point_where_the_first_one_is_stands_in_order_however_it_is_rounded() {
+    let turning = [0.2, 1.4, 2.7, 3.9, 5.2].map(|phi| (phi, Plus));
+    let l = triple_rocker();
+    let InputRange::One(arc) = l.mobility().input else { panic!("one arc") };
+    let at = |u: f64| arc.middle + u * arc.half_width;
+    let rocking = [(at(0.1), Plus), (at(0.7), Plus), (at(0.5), Minus), (at(-0.6), Minus), (at(-0.8), Plus)];
+    for (l, places, others) in
+        [(crank_rocker(), turning, Vec::new()), (l, rocking, vec!["branch"])] as [(_, _, Vec<&str>); 2]
+    {
+        for off in [-1e-12, 0.0, 1e-12] {
+            let mut places = places.to_vec();
+            places.push((places[0].0 + off, places[0].1));
+            assert_eq!(names(&verdict(&free(6), &l, &places)), others, "{off}");
+        }
+        // Clearly past the first one it has been around once already.
+        let mut past = places.to_vec();
+        past.push((places[0].0 + 1e-3, places[0].1));
+        assert!(names(&verdict(&free(6), &l, &past)).contains(&"order"));
+    }
+}
+
+#[test]
 fn a_motion_past_toggles_is_in_order_by_the_circuit_and_not_by_the_crank_angle() {
     let l = triple_rocker();
     let InputRange::One(arc) = l.mobility().input else { panic!("one arc") };

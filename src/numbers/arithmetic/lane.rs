@@ -87,6 +87,30 @@ impl F64x8 {
         ((l[0] + l[4]) + (l[2] + l[6])) + ((l[1] + l[5]) + (l[3] + l[7]))
     }
 
+    /// Returns the size of each number.
+    #[inline(always)]
+    #[must_use]
+    pub fn abs(self) -> Self {
+        self.map(f64::abs)
+    }
+
+    /// Returns the quotient of each two numbers.
+    #[inline(always)]
+    #[must_use]
+    pub fn over(self, other: Self) -> Self {
+        self.zip(other, |x, y| x / y)
+    }
+
+    /// Returns whether any number is above the limit, or NaN.
+    #[inline(always)]
+    pub fn any_above(self, limit: f64) -> bool {
+        let mut above = 0_u64;
+        for lane in self.0 {
+            above |= u64::from(lane > limit || lane.is_nan());
+        }
+        above != 0
+    }
+
     #[expect(clippy::needless_range_loop, reason = "indexed loops over arrays become vector instructions")]
     #[inline(always)]
     fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {

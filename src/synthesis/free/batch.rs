@@ -4,13 +4,16 @@
 //! evaluations reads the same rounds and further ones, so that its answer is no worse. As long as nothing acceptable is
 //! known, the first round that they do not suffice for is read too, cut short.
 
+use super::noise::Scatter;
 use super::parts::{Reading, in_order, suffice_for};
-use super::round::{Common, Finished, Round, Setup, apart, finished, round, unfinished};
+use super::round::{Common, Finished, Round, Setup, apart, finished, lead_to_digits, round, unfinished};
 use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Evaluations;
 use crate::synthesis::Context;
 use crate::synthesis::belief::{NEARLY, SAME_OPTIMUM};
-use crate::synthesis::constants::free::{ALIKE_ENDS, BATCH, DIFFERENT, FINISHING, LEADING, SAME_END};
+use crate::synthesis::constants::free::{
+    ALIKE_ENDS, BATCH, DIFFERENT, FINISHING, HALF_BATCH, LEADING, SAME_END,
+};
 use crate::synthesis::states::{End, StageState};
 use std::ops::Range;
 
@@ -30,13 +33,15 @@ pub(super) struct Batch {
 impl Batch {
     /// Runs the rounds of a batch with at most `left` evaluations; `stage` is the state of its stage before it, `first` the
     /// index of its first round in the whole search, `best` the error of the best answer so far, infinite if there is none.
+    /// `scatter` that of other stages. If the first rounds of the search show noise, it ends once half of them are `enough`.
     pub(super) fn run(
         context: Context<'_>,
         setup: &Setup<'_>,
         stage: &StageState,
         first: u64,
-        best: f64,
+        (best, scatter): (f64, Option<Scatter>),
         left: u64,
+        enough: impl Fn(&mut Batch) -> bool,
     ) -> Batch {
         let mut batch = Batch {
             draws: 0,
@@ -47,16 +52,18 @@ impl Batch {
             stage: stage.clone(),
         };
         let near_ends = stage.leading.iter().map(|(_, start)| start.clone()).collect();
-        let common = Common { context, setup, first_of_stage: stage.index, near_ends, best };
+        let common = Common { context, setup, first_of_stage: stage.index, near_ends, best, scatter };
         // If ends are finished after the rounds and an exact one would end the search, one round runs before the
         // others.
         let split = common.finishes_apart() && setup.single && first == 0;
-        let waves: &[(u64, u64)] = if split { &[(0, 1), (1, BATCH)] } else { &[(0, BATCH)] };
-        for &(begin, end) in waves {
+        let (mut begin, mut end) = (0, if split { 1 } else { BATCH });
+        loop {
             let is_exact = batch.wave(&common, begin..end, left.saturating_sub(batch.cost.objective));
-            if is_exact || !batch.whole {
+            if is_exact || !batch.whole || end == BATCH || (end == HALF_BATCH && enough(&mut batch)) {
                 break;
             }
+            let is_noise = common.scatter(&batch.stage).is_some();
+            (begin, end) = (end, if end == 1 && is_noise { HALF_BATCH } else { BATCH });
         }
         batch.stage.index += BATCH;
         batch.stage.leading.sort_by(|one, other| one.0.0.total_cmp(&other.0.0));
@@ -67,7 +74,6 @@ impl Batch {
     /// Runs some of the rounds in parallel, then finishes the ends that they share, and reads those that the evaluations
     /// left suffice for. Returns whether an exact answer is among them.
     fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, left: u64) -> bool {
-        let setup = common.setup;
         let (first, bar, before) = (wave.start, self.stage.bar, self.cost.objective);
         let reading = Reading::new(wave.clone(), left);
         let mut rounds: Vec<Round> = in_order(wave, |index| round(common, index, bar, left, &reading));
@@ -84,7 +90,7 @@ impl Batch {
         }
         let exact = done.iter().any(|done| done.exact);
         let next = first + rounds.len() as u64;
-        self.read(setup, rounds, done);
+        self.read(common, rounds, done);
         if !self.whole && common.best.is_infinite() {
             let used = self.cost.objective - before;
             self.read_cut_short(common, next, left.saturating_sub(used));
@@ -93,7 +99,7 @@ impl Batch {
     }
 
     /// Adds the results of rounds, and of their ends that were finished after them.
-    fn read(&mut self, setup: &Setup<'_>, mut rounds: Vec<Round>, mut done: Vec<Finished>) {
+    fn read(&mut self, common: &Common<'_>, mut rounds: Vec<Round>, mut done: Vec<Finished>) {
         let merits = done.iter().map(|done| (Exact(done.explored), Exact(done.end.merit)));
         self.stage.finished.extend(merits);
         for round in &mut rounds {
@@ -101,7 +107,7 @@ impl Batch {
             self.cost += round.cost;
             if round.independent {
                 self.stage.round_merits.push(Exact(round.explored()));
-                self.best_merits.push(self.least_on_all(setup, round));
+                self.best_merits.push(self.least_on_all(common, round));
             }
             self.stage.bar = self.stage.bar.min(round.explored());
             done.append(&mut round.finished);
@@ -118,13 +124,15 @@ impl Batch {
     /// Fits the ends of rounds to all points, each once, up to the first exact one. Drops the rounds that the evaluations
     /// left do not suffice for with the fits of their ends.
     fn finish(&mut self, common: &Common<'_>, rounds: &mut Vec<Round>, left: u64) -> Vec<Finished> {
-        let ends = unfinished(common.setup, rounds, &self.stage, common.best);
+        let before = self.cost.objective;
+        let ends = unfinished(common, rounds, &self.stage);
         let parts = ends.len() as u64;
+        let scatter = common.scatter(&self.stage);
         let reading = Reading::new(0..parts, u64::MAX);
         let mut finishes: Vec<(usize, Vec<Finished>, Evaluations)> = in_order(0..parts, |i| {
             let end = &ends[i as usize];
             let allowance = left.saturating_sub(rounds[end.round].cost.objective);
-            let (done, cost) = finished(common, (i, end), allowance, &reading);
+            let (done, cost) = finished(common, (i, end), (allowance, scatter.is_some()), &reading);
             (end.round, done, cost)
         });
         if let Some(exact) = finishes.iter().position(|(_, done, _)| done.iter().any(|end| end.exact)) {
@@ -139,27 +147,31 @@ impl Batch {
             self.cost += cost;
             done.extend(ends);
         }
+        if let Some(scatter) = scatter {
+            let rounds: u64 = rounds.iter().map(|round| round.cost.objective).sum();
+            let used = self.cost.objective - before + rounds;
+            self.cost += lead_to_digits(common, scatter, &mut done, left.saturating_sub(used));
+        }
         done
     }
 
     /// Runs and reads a round with the evaluations left, which do not suffice for all of it. If its ends are finished
     /// after it, a part of them is kept for that.
     fn read_cut_short(&mut self, common: &Common<'_>, index: u64, left: u64) {
-        let setup = common.setup;
         let for_ends = if common.finishes_apart() { left / FINISHING } else { 0 };
         let alone = || Reading::new(0..0, u64::MAX);
         let cut = vec![round(common, index, self.stage.bar, left - for_ends, &alone())];
         let mut done: Vec<Finished> = Vec::new();
         if common.finishes_apart() {
             let mut left = left.saturating_sub(cut[0].cost.objective);
-            for end in unfinished(setup, &cut, &self.stage, common.best) {
-                let (ends, cost) = finished(common, (0, &end), left, &alone());
+            for end in unfinished(common, &cut, &self.stage) {
+                let (ends, cost) = finished(common, (0, &end), (left, false), &alone());
                 left = left.saturating_sub(cost.objective);
                 self.cost += cost;
                 done.extend(ends);
             }
         }
-        self.read(setup, cut, done);
+        self.read(common, cut, done);
     }
 
     /// Keeps the first rounds that the evaluations left suffice for, and records whether these limited any; `cost` returns
@@ -176,21 +188,27 @@ impl Batch {
     }
 
     /// Returns the least merit on all points of the ends of a round, whether they were finished in it or after a batch. An
-    /// end that is only like one that was finished is near it.
-    fn least_on_all(&self, setup: &Setup<'_>, round: &Round) -> f64 {
+    /// end that is only like one that was finished is near it; in noise one that was not finished has the merit that can be
+    /// expected.
+    fn least_on_all(&self, common: &Common<'_>, round: &Round) -> f64 {
         let own = round.finished.iter().map(|done| done.end.merit);
-        let shared = self.stage.finished.iter().flat_map(|&(Exact(explored), Exact(whole))| {
-            // Nearly exact ends are told apart to the last.
-            let (same, alike) = if whole > setup.nearly_exact {
-                (SAME_END, ALIKE_ENDS)
-            } else {
-                (SAME_OPTIMUM, SAME_OPTIMUM)
-            };
-            round.leaders.iter().filter_map(move |(merit, _)| match apart(explored, *merit) {
-                apart if apart <= same => Some(whole),
-                apart if apart <= alike => Some(whole * (1.0 + 0.5 * NEARLY)),
-                _ => None,
-            })
+        let scatter = common.scatter(&self.stage);
+        let shared = round.leaders.iter().filter_map(|&(merit, _)| {
+            let known = self.stage.finished.iter().filter_map(|&(Exact(explored), Exact(whole))| {
+                // Nearly exact ends are told apart to the last.
+                let (same, alike) = if whole > common.setup.nearly_exact {
+                    (SAME_END, ALIKE_ENDS)
+                } else {
+                    (SAME_OPTIMUM, SAME_OPTIMUM)
+                };
+                match apart(explored, merit) {
+                    apart if apart <= same => Some(whole),
+                    apart if apart <= alike => Some(whole * (1.0 + 0.5 * NEARLY)),
+                    _ => None,
+                }
+            });
+            let least = known.min_by(f64::total_cmp);
+            least.or_else(|| scatter.map(|scatter| scatter.expected(merit) * (1.0 + 0.5 * NEARLY)))
         });
         own.chain(shared).fold(f64::INFINITY, f64::min)
     }

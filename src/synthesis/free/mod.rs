@@ -28,7 +28,9 @@
 //! near known ends get their turn. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
 //! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough, after `NOISE_EVALUATIONS` at least:
 //! so the best of several answers is worth comparing with that of another problem. If one answer is wanted, fewer are
-//! enough. If neighbouring residuals are correlated, the linkage misses a shape that another linkage may have. The search
+//! enough, and the first batch may end after half of its rounds. The points of a group then scatter about their mean
+//! nearly alike for all linkages ([`mod@noise`]), so that the error of an end on all points can be expected from that on the
+//! groups: few ends are finished, and the others are counted with the error that is expected. If neighbouring residuals are correlated, the linkage misses a shape that another linkage may have. The search
 //! then ends when the error has kept its level (within a factor `LEVEL`) for several times as many evaluations as it took
 //! to reach it: `LEVEL_TIMES` if `LEVEL_HITS` independent rounds came to that level, `QUIET_TIMES` if one did; so does a
 //! search of a sparse target of `STRICT_LEAST` points or more. An error below `SMALL` sizes may be that of a clean curve
@@ -45,13 +47,11 @@ use super::required::cost_of;
 use super::starts::Starts;
 use super::states::{Counts, End, FreeState, Level, SearchState, StageState};
 use super::{Context, HitsSoFar, repeats};
-use crate::judge::error::structural_error;
 use crate::judge::rank::{exact_cost, searched};
-use crate::mechanism::dot;
 use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Candidate;
 use crate::synthesis::constants::free::{
-    ALIKE, BATCH, CONFIRMING, CORNERS_AT, CORNERS_EVERY, DENSE_CONFIRMING, DENSE_STRICTER, IN_NOISE, KEPT,
+    BATCH, CONFIRMING, CORNERS_AT, CORNERS_EVERY, DENSE_CONFIRMING, DENSE_STRICTER, IN_NOISE, KEPT,
     LEAST_BATCHES, LEVEL, LEVEL_HITS, LEVEL_LEAST, LEVEL_TIMES, MANY_HITS, MANY_LEAST, NEARLY_EXACT,
     NOISE_EVALUATIONS, NOISE_HITS, NOISE_HITS_FOR_ONE, NOISE_LEAST, NOISE_ROUNDS_FOR_ONE, PATIENT_BATCHES,
     QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICTER, TURNING_IN_NOISE, WHOLE_ELSE, WHOLE_EVERY,
@@ -60,30 +60,50 @@ use crate::synthesis::constants::free::{
 use crate::task::Problem;
 use batch::Batch;
 use explorations::{Exploration, Explored, Points, explorations};
+use noise::{Scatter, is_noise};
 use round::Setup;
 use std::cell::OnceCell;
 use stricter::{Kind, has_many_points, stricter};
 
 mod batch;
 pub(super) mod explorations;
+mod noise;
 mod parts;
 mod round;
 mod state;
 mod stricter;
 
-/// Returns whether the errors of the best acceptable end are noise.
-fn is_noise(problem: &Problem, ends: &[End]) -> bool {
-    let best = ends.iter().filter_map(|end| end.verdict.as_ref()).find(|c| promising(problem, c));
-    best.is_some_and(|best| likeness(problem, best) < ALIKE)
-}
-
-/// Returns the correlation of the errors of neighbouring points: sum <r_j, r_j+1> / sum |r_j|^2, near 0 for noise, near
-/// 1 for a smooth misfit.
-fn likeness(problem: &Problem, candidate: &Candidate) -> f64 {
-    let Some(error) = structural_error(problem, candidate) else { return 1.0 };
-    let whole: f64 = error.structural.iter().map(|r| r.norm_sqr()).sum();
-    let alike: f64 = error.structural.windows(2).map(|w| dot(w[0], w[1])).sum();
-    if whole > 0.0 { alike / whole } else { 1.0 }
+/// Judges ends in order of increasing merit: until the first accepted one if one answer is wanted, else all that can be
+/// among the best. Returns the best of them.
+fn judge_from_the_best(
+    context: Context<'_>,
+    ends: &mut [End],
+    wanted: usize,
+    exact: f64,
+) -> Option<Candidate> {
+    let problem = context.problem;
+    let judging = context.judging();
+    let mut best: Option<Candidate> = None;
+    let mut count = 0;
+    let enough = if wanted == 1 { 1 } else { 8 * wanted };
+    for end in ends {
+        if count >= enough {
+            break;
+        }
+        if !end.judged && !judging.may_go_on() {
+            continue;
+        }
+        end.judge(problem);
+        let Some(candidate) = end.verdict.as_ref().filter(|c| promising(problem, c)) else { continue };
+        count += 1;
+        let better = best
+            .as_ref()
+            .is_none_or(|b| searched(problem, candidate).max(exact) < searched(problem, b).max(exact));
+        if better {
+            best = Some(candidate.clone());
+        }
+    }
+    best
 }
 
 /// The search with its state.
@@ -248,9 +268,29 @@ impl<'a> Free<'a> {
         hits >= NOISE_HITS_FOR_ONE || (hits > 1 && self.at.best_merits.len() >= NOISE_ROUNDS_FOR_ONE)
     }
 
+    /// Returns whether the first rounds of a search for one answer are enough: its errors are noise, and enough of them have
+    /// come to equally good answers.
+    fn is_enough_in_noise(&self, context: Context<'_>, batch: &mut Batch) -> bool {
+        batch.ends.sort_by(|one, other| one.merit.total_cmp(&other.merit));
+        let best = judge_from_the_best(context, &mut batch.ends, self.wanted, self.exact);
+        let Some(error) = best.map(|best| searched(self.problem, &best)) else { return false };
+        let hits = repeats::came(batch.best_merits.iter().copied(), error, IN_NOISE, self.exact);
+        hits >= NOISE_HITS_FOR_ONE
+            && error > self.cost_of(NOISE_LEAST).max(self.exact)
+            && is_noise(self.problem, &batch.ends)
+    }
+
     /// Returns whether a search whose errors are noise has had the evaluations that several answers are worth.
     fn is_long_enough_in_noise(&self) -> bool {
         self.wanted == 1 || self.at.evaluations.objective >= NOISE_EVALUATIONS
+    }
+
+    /// Returns the scatter of the points about the means of groups, if it is noise.
+    fn scatter(&self) -> Option<Scatter> {
+        let in_groups = |(e, _): &(&Exploration<'_>, &StageState)| e.explored.points == Points::First;
+        let stages = self.explorations.iter().zip(&self.at.stages).filter(in_groups);
+        let shown = stages.filter_map(|(_, stage)| Scatter::of(self.problem, stage));
+        shown.filter(|_| self.is_dense()).min_by(|one, other| one.best.total_cmp(&other.best))
     }
 
     /// Returns whether the target is dense and the errors of the best acceptable end are noise.
@@ -271,32 +311,9 @@ impl<'a> Free<'a> {
         ends.truncate(KEPT);
     }
 
-    /// Judges ends in order of increasing merit: until the first accepted one if one answer is wanted, else all that can
-    /// be among the best. Returns the best of them.
+    /// Judges the known ends from the best on ([`judge_from_the_best`]).
     fn judge_from_the_best(&mut self, context: Context<'_>) -> Option<Candidate> {
-        let (problem, exact) = (self.problem, self.exact);
-        let judging = context.judging();
-        let mut best: Option<Candidate> = None;
-        let mut count = 0;
-        let enough = if self.wanted == 1 { 1 } else { 8 * self.wanted };
-        for end in &mut self.at.ends {
-            if count >= enough {
-                break;
-            }
-            if !end.judged && !judging.may_go_on() {
-                continue;
-            }
-            end.judge(problem);
-            let Some(candidate) = end.verdict.as_ref().filter(|c| promising(problem, c)) else { continue };
-            count += 1;
-            let better = best
-                .as_ref()
-                .is_none_or(|b| searched(problem, candidate).max(exact) < searched(problem, b).max(exact));
-            if better {
-                best = Some(candidate.clone());
-            }
-        }
-        best
+        judge_from_the_best(context, &mut self.at.ends, self.wanted, self.exact)
     }
 
     /// Returns the judged candidates that are acceptable, or would be after their polish.
@@ -360,8 +377,9 @@ impl Strategy for Free<'_> {
     fn run(&mut self, context: Context<'_>, left: u64) -> (Self::Batch, bool) {
         let now = self.next_stage();
         let first = self.at.counts.batch * BATCH;
-        let (setup, best) = (self.setup(now), self.best_error());
-        let batch = Batch::run(context, setup, &self.at.stages[now], first, best, left);
+        let (setup, known) = (self.setup(now), (self.best_error(), self.scatter()));
+        let enough = |batch: &mut Batch| self.is_enough_in_noise(context, batch);
+        let batch = Batch::run(context, setup, &self.at.stages[now], first, known, left, enough);
         let whole = batch.whole;
         self.is_cut = !whole;
         ((batch, now), whole)

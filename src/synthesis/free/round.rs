@@ -1,6 +1,7 @@
 //! One round of the search for free timing: starts, short fits, longer fits of the best, and the treatment of their
 //! ends.
 
+use super::noise::Scatter;
 use super::parts::Reading;
 use super::stricter::has_many_points;
 use crate::judge::rank::searched;
@@ -12,8 +13,8 @@ use crate::synthesis::belief::SAME_OPTIMUM;
 use crate::synthesis::coarse::Coarse;
 use crate::synthesis::constants::free::{
     ALIKE_ENDS, BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, DENSE_WORTH_DIGITS, DENSE_WORTH_FINISHING,
-    JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED, SCREEN, SEVERAL_WORTH_FINISHING, SHORT, SHORT_FIT,
-    WORTH_DIGITS, WORTH_FINISHING,
+    FINISHED_IN_NOISE, IN_NOISE, JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED, SCREEN,
+    SEVERAL_WORTH_FINISHING, SHORT, SHORT_FIT, WORTH_DIGITS, WORTH_FINISHING,
 };
 use crate::synthesis::moves::{along_a_difference, near};
 use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
@@ -78,9 +79,21 @@ pub(super) struct Common<'a> {
     pub(super) near_ends: Vec<Start>,
     /// The error of the best answer of the batches before on all points, infinite if there is none.
     pub(super) best: f64,
+    /// The scatter of the points about the groups' means that other stages have shown.
+    pub(super) scatter: Option<Scatter>,
 }
 
 impl Common<'_> {
+    /// Returns the scatter of the points about the groups' means, if groups are explored, one answer is wanted, and it is
+    /// noise.
+    pub(super) fn scatter(&self, stage: &StageState) -> Option<Scatter> {
+        if !self.setup.single || self.setup.coarse.is_none() {
+            return None;
+        }
+        let shown = Scatter::of(self.setup.problem, stage).into_iter().chain(self.scatter);
+        shown.min_by(|one, other| one.best.total_cmp(&other.best))
+    }
+
     /// Returns whether ends are finished after their batch, each of them once. On a sparse target of few points, or one whose
     /// best error is nearly exact, they are finished in their rounds: the first exact answer ends a batch.
     pub(super) fn finishes_apart(&self) -> bool {
@@ -263,7 +276,7 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, r
             }
             // A better one has been finished, in this round or before it.
             if setup.is_worth_finishing(*merit, best) {
-                round.finished.extend(finish(setup, (*merit, start), best, &mut spender));
+                round.finished.extend(finish(setup, (*merit, start), best, true, &mut spender));
                 if round.is_exact() {
                     break;
                 }
@@ -277,12 +290,13 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, r
 
 /// Fits an end on the explored points to all points: under the stricter requirements that were explored, if there are
 /// any, and on from there without them. The first of these ends may be accepted where the second is not. Those that can
-/// matter beside the best error known are led to their last digits: fits along a limit take most of their evaluations for
-/// these. Empty if its positions cannot be refined to all points.
+/// matter beside the best error known are led to their last digits if `digits` are wanted: fits along a limit take most of
+/// their evaluations for these. Empty if its positions cannot be refined to all points.
 fn finish(
     setup: &Setup<'_>,
     (explored, start): (f64, &Start),
     best: f64,
+    digits: bool,
     spender: &mut Spender<'_>,
 ) -> Vec<Finished> {
     let start = match setup.coarse {
@@ -305,7 +319,7 @@ fn finish(
             let Some(fitted) = further(problem, end.1, MIDDLE_FIT) else { break };
             end = fitted;
         }
-        if setup.is_worth_its_digits(end.0, best) {
+        if digits && setup.is_worth_its_digits(end.0, best) {
             let Some(fitted) = further(problem, end.1, LONG_FIT) else { break };
             end = fitted;
         }
@@ -336,13 +350,13 @@ pub(super) struct Unfinished<'a> {
 }
 
 /// Returns the ends of rounds on the explored points that can still matter and have not been finished in earlier batches
-/// of the stage, each once, best first.
+/// of the stage, each once, best first; in noise a few of those that can be expected to be the best.
 pub(super) fn unfinished<'a>(
-    setup: &Setup<'_>,
+    common: &Common<'_>,
     rounds: &'a [Round],
     stage: &StageState,
-    known: f64,
 ) -> Vec<Unfinished<'a>> {
+    let &Common { setup, best: known, .. } = common;
     // Beside an error that is nearly exact the error that the groups' means make is not small.
     let is_far = known > setup.nearly_exact;
     let known = if is_far { known } else { f64::INFINITY };
@@ -360,6 +374,10 @@ pub(super) fn unfinished<'a>(
         }
     }
     out.sort_by(|one, other| one.merit.total_cmp(&other.merit));
+    if let Some(scatter) = common.scatter(stage) {
+        out.retain(|end| scatter.expected(end.merit) <= (1.0 + IN_NOISE) * scatter.best);
+        out.truncate(FINISHED_IN_NOISE);
+    }
     out
 }
 
@@ -368,18 +386,38 @@ pub(super) fn apart(one: f64, other: f64) -> f64 {
     if one == other { 0.0 } else { (one - other).abs() / other }
 }
 
-/// Finishes end `index` of them within its allowance, unless one before it was exact.
+/// Finishes end `index` of them within its allowance, unless one before it was exact; `in_noise` without the last digits.
 pub(super) fn finished(
     &Common { context, setup, best, .. }: &Common<'_>,
     (index, end): (u64, &Unfinished<'_>),
-    allowance: u64,
+    (allowance, in_noise): (u64, bool),
     reading: &Reading,
 ) -> (Vec<Finished>, Evaluations) {
     let mut spender = Spender::beside(context, allowance, best);
     if reading.is_unread(index) {
         return (Vec::new(), spender.cost);
     }
-    let done = finish(setup, (end.merit, end.start), best, &mut spender);
+    let done = finish(setup, (end.merit, end.start), best, !in_noise, &mut spender);
     reading.ended(index, spender.cost.objective, done.iter().any(|done| done.exact));
     (done, spender.cost)
+}
+
+/// Leads the best of the ends that were finished in noise to its last digits, if it is the best of all.
+pub(super) fn lead_to_digits(
+    &Common { context, setup, best, .. }: &Common<'_>,
+    scatter: Scatter,
+    done: &mut [Finished],
+    allowance: u64,
+) -> Evaluations {
+    let mut spender = Spender::beside(context, allowance, best);
+    let least = done.iter_mut().min_by(|one, other| one.end.merit.total_cmp(&other.end.merit));
+    if let Some(Finished { end, .. }) = least.filter(|least| least.end.merit < scatter.best)
+        && let Some(fitted) = spender.fit_as_required(setup.problem, end.start.clone(), LONG_FIT)
+    {
+        let (merit, start) = spender.at_best_places(setup.problem, fitted, LONG_FIT);
+        if merit < end.merit {
+            *end = End { start, merit, judged: false, verdict: None };
+        }
+    }
+    spender.cost
 }

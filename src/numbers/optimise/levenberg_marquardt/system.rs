@@ -5,6 +5,7 @@ use super::block::{across_and_along, column, dot};
 use super::{AHEAD, BlockLeastSquares, LmResult, MAX_TAU, Penalty, PointBlock};
 use crate::damping::held;
 use crate::ordered::Ordered;
+use linkwright_arithmetic::lane::{F64x8, LANES, Lane};
 use nalgebra::{SMatrix, SVector};
 use std::array::from_fn;
 
@@ -131,15 +132,12 @@ fn change<const N: usize>(from: f64, row: &[f64; N], dx: &[f64; N]) -> f64 {
     row.iter().zip(dx).fold(from, |sum, (by, d)| sum + by * d)
 }
 
-/// The number of lanes in which a sum of products runs.
-const LANES: usize = 8;
-
 /// Rows of a Jacobian with their residuals, in blocks of [`LANES`] rows, column by column within a block; the last
 /// block is padded with zeros.
 #[derive(Default)]
 pub(super) struct Rows<const N: usize> {
-    jacobian: Vec<[[f64; LANES]; N]>,
-    residual: Vec<[f64; LANES]>,
+    jacobian: Vec<[F64x8; N]>,
+    residual: Vec<F64x8>,
     count: usize,
 }
 
@@ -154,15 +152,15 @@ impl<const N: usize> Rows<N> {
     fn push(&mut self, row: impl Fn(usize) -> f64, residual: f64) {
         let lane = self.count % LANES;
         if lane == 0 {
-            self.jacobian.push([[0.0; LANES]; N]);
-            self.residual.push([0.0; LANES]);
+            self.jacobian.push([F64x8::splat(0.0); N]);
+            self.residual.push(F64x8::splat(0.0));
         }
         self.count += 1;
         if let (Some(block), Some(residuals)) = (self.jacobian.last_mut(), self.residual.last_mut()) {
             for (i, column) in block.iter_mut().enumerate() {
-                column[lane] = row(i);
+                column.0[lane] = row(i);
             }
-            residuals[lane] = residual;
+            residuals.0[lane] = residual;
         }
     }
 
@@ -198,24 +196,20 @@ impl<const N: usize> Rows<N> {
         let mut matrix = [[0.0; N]; N];
         let mut gradient = [0.0; N];
         for i in 0..N {
-            let mut sums = [[0.0; LANES]; N];
-            let mut by_residual = [0.0; LANES];
+            let mut sums = [F64x8::splat(0.0); N];
+            let mut by_residual = F64x8::splat(0.0);
             for (block, residual) in self.jacobian.iter().zip(&self.residual) {
-                let column = &block[i];
+                let column = block[i];
                 for k in i..N {
-                    for lane in 0..LANES {
-                        sums[k][lane] += column[lane] * block[k][lane];
-                    }
+                    sums[k] = sums[k] + column * block[k];
                 }
-                for lane in 0..LANES {
-                    by_residual[lane] += column[lane] * residual[lane];
-                }
+                by_residual = by_residual + column * *residual;
             }
             for k in i..N {
-                matrix[i][k] = sums[k].iter().sum();
+                matrix[i][k] = sums[k].0.iter().sum();
                 matrix[k][i] = matrix[i][k];
             }
-            gradient[i] = by_residual.iter().sum();
+            gradient[i] = by_residual.0.iter().sum();
         }
         (matrix, gradient)
     }

@@ -4,6 +4,7 @@ use super::shape::{Closure, SliderShape};
 use crate::mechanism::effort::computed;
 use crate::mechanism::{Complex, cross};
 use crate::numbers::arithmetic::dispatch::vectorised;
+use crate::numbers::arithmetic::lane::{F64x8, Lane};
 use crate::task::forms::torus::{Blocks, Curve, Positions, RETURN_STEPS};
 
 /// Tolerance for a position on its curve: its miss over the largest length.
@@ -30,12 +31,14 @@ struct Block {
 
 impl Curve for Line {
     #[inline(always)]
-    fn frame(&self, [ex, ey, ux, uy]: [f64; 4]) -> (f64, f64, f64) {
-        let s = self.direction;
-        let (across_e, across_u) = (ey * s.re - ex * s.im, uy * s.re - ux * s.im);
-        let (along_e, along_u) = (ex * s.re + ey * s.im, ux * s.re + uy * s.im);
-        let value = self.constant + self.crank * across_e + self.coupler * across_u;
-        (value, self.crank * along_e, self.coupler * along_u)
+    fn frame(&self, [ex, ey, ux, uy]: [F64x8; 4]) -> (F64x8, F64x8, F64x8) {
+        let all = F64x8::splat;
+        let (re, im) = (all(self.direction.re), all(self.direction.im));
+        let (crank, coupler) = (all(self.crank), all(self.coupler));
+        let (across_e, across_u) = (ey * re - ex * im, uy * re - ux * im);
+        let (along_e, along_u) = (ex * re + ey * im, ux * re + uy * im);
+        let value = all(self.constant) + crank * across_e + coupler * across_u;
+        (value, crank * along_e, coupler * along_u)
     }
 
     #[inline(always)]
@@ -46,10 +49,12 @@ impl Curve for Line {
 
 impl Curve for Block {
     #[inline(always)]
-    fn frame(&self, [ex, ey, ux, uy]: [f64; 4]) -> (f64, f64, f64) {
-        let (vx, vy) = (self.ground.re - self.crank * ex, self.ground.im - self.crank * ey);
-        let value = vy * ux - vx * uy - self.offset;
-        (value, -self.crank * (ex * ux + ey * uy), -(vx * ux + vy * uy))
+    fn frame(&self, [ex, ey, ux, uy]: [F64x8; 4]) -> (F64x8, F64x8, F64x8) {
+        let all = F64x8::splat;
+        let crank = all(self.crank);
+        let (vx, vy) = (all(self.ground.re) - crank * ex, all(self.ground.im) - crank * ey);
+        let value = vy * ux - vx * uy - all(self.offset);
+        (value, -crank * (ex * ux + ey * uy), -(vx * ux + vy * uy))
     }
 
     #[inline(always)]

@@ -1,6 +1,7 @@
 //! Positions on their curves, eight at a time: steps along a curve, and the return to it.
 
 use crate::mechanism::Complex;
+use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 use crate::task::forms::design_space::Shape;
 
 /// Most Newton steps that bring a position back to its curve; each squares the miss.
@@ -11,7 +12,7 @@ const ON_CURVE: f64 = 1e-14;
 /// A closure G(e, u) = 0 of a loop, on whose curve positions lie.
 pub(in crate::task::forms) trait Curve {
     /// Returns G, G_phi, G_w at e = (ex, ey), u = (ux, uy).
-    fn frame(&self, position: [f64; 4]) -> (f64, f64, f64);
+    fn frame(&self, position: [F64x8; 4]) -> (F64x8, F64x8, F64x8);
 
     /// Returns the |G| below which a position is on the curve.
     fn near(&self) -> f64;
@@ -46,11 +47,13 @@ impl Loop {
 impl Curve for Loop {
     /// G = (|Y|^2 - c^2)/2.
     #[inline(always)]
-    fn frame(&self, [ex, ey, ux, uy]: [f64; 4]) -> (f64, f64, f64) {
-        let yx = self.ground[0] + self.a * ex + self.b * ux;
-        let yy = self.ground[1] + self.a * ey + self.b * uy;
-        let miss = 0.5 * (yx * yx + yy * yy - self.c2);
-        (miss, self.a * (yy * ex - yx * ey), self.b * (yy * ux - yx * uy))
+    fn frame(&self, [ex, ey, ux, uy]: [F64x8; 4]) -> (F64x8, F64x8, F64x8) {
+        let all = F64x8::splat;
+        let (a, b) = (all(self.a), all(self.b));
+        let yx = all(self.ground[0]) + a * ex + b * ux;
+        let yy = all(self.ground[1]) + a * ey + b * uy;
+        let miss = all(0.5) * (yx * yx + yy * yy - all(self.c2));
+        (miss, a * (yy * ex - yx * ey), b * (yy * ux - yx * uy))
     }
 
     #[inline(always)]
@@ -59,34 +62,32 @@ impl Curve for Loop {
     }
 }
 
-/// Turns a unit vector by an angle, to third order, and keeps it at unit length without trigonometry: (1 + i h)/(1 - i
+/// Turns unit vectors by angles, to third order, and keeps them at unit length without trigonometry: (1 + i h)/(1 - i
 /// h) with h = angle/2, and one Newton step to |z| = 1.
 #[inline(always)]
-fn turn(x: f64, y: f64, angle: f64) -> (f64, f64) {
-    let h = 0.5 * angle;
+fn turn(x: F64x8, y: F64x8, angle: F64x8) -> (F64x8, F64x8) {
+    let all = F64x8::splat;
+    let h = all(0.5) * angle;
     let h2 = h * h;
-    let inverse = 1.0 / (1.0 + h2);
-    let (cos, sin) = ((1.0 - h2) * inverse, 2.0 * h * inverse);
+    let inverse = (all(1.0) + h2).recip();
+    let (cos, sin) = ((all(1.0) - h2) * inverse, all(2.0) * h * inverse);
     let (x, y) = (x * cos - y * sin, y * cos + x * sin);
-    let unit = 1.5 - 0.5 * (x * x + y * y);
+    let unit = all(1.5) - all(0.5) * (x * x + y * y);
     (x * unit, y * unit)
 }
 
-/// The number of positions in a block.
-const LANES: usize = 8;
-
-/// Positions as blocks of e_x, e_y, u_x, u_y, each of [`LANES`] positions, so that the loops over a block become vector
-/// instructions. The last block is filled up with the last position.
-pub(in crate::task::forms) struct Blocks(Vec<[[f64; LANES]; 4]>);
+/// Positions as blocks of e_x, e_y, u_x, u_y, each of [`LANES`] positions side by side. The last block is filled up with the
+/// last position.
+pub(in crate::task::forms) struct Blocks(Vec<[F64x8; 4]>);
 
 impl Blocks {
     pub(in crate::task::forms) fn gather(positions: &[[Complex; 2]]) -> Blocks {
         let block = |part: &[[Complex; 2]]| {
-            let mut block = [[0.0; LANES]; 4];
+            let mut block = [F64x8::splat(0.0); 4];
             for lane in 0..LANES {
                 let [e, u] = part[lane.min(part.len() - 1)];
-                (block[0][lane], block[1][lane]) = (e.re, e.im);
-                (block[2][lane], block[3][lane]) = (u.re, u.im);
+                (block[0].0[lane], block[1].0[lane]) = (e.re, e.im);
+                (block[2].0[lane], block[3].0[lane]) = (u.re, u.im);
             }
             block
         };
@@ -96,7 +97,7 @@ impl Blocks {
     pub(in crate::task::forms) fn scatter(&self, positions: &mut [[Complex; 2]]) {
         for (part, [ex, ey, ux, uy]) in positions.chunks_mut(LANES).zip(&self.0) {
             for (lane, position) in part.iter_mut().enumerate() {
-                *position = [Complex::new(ex[lane], ey[lane]), Complex::new(ux[lane], uy[lane])];
+                *position = [Complex::new(ex.0[lane], ey.0[lane]), Complex::new(ux.0[lane], uy.0[lane])];
             }
         }
     }
@@ -104,15 +105,15 @@ impl Blocks {
     /// Moves each position along its own curve by `forward` tau.
     #[inline(always)]
     pub(in crate::task::forms) fn step(&mut self, on: &impl Curve, forward: f64, tau: &[f64]) {
-        for (tau, [ex, ey, ux, uy]) in tau.chunks(LANES).zip(&mut self.0) {
-            let mut steps = [tau[tau.len() - 1]; LANES];
-            steps[..tau.len()].copy_from_slice(tau);
-            for i in 0..LANES {
-                let (_, by_e, by_u) = on.frame([ex[i], ey[i], ux[i], uy[i]]);
-                let step = forward * steps[i] / (by_e * by_e + by_u * by_u).sqrt();
-                (ex[i], ey[i]) = turn(ex[i], ey[i], step * by_u);
-                (ux[i], uy[i]) = turn(ux[i], uy[i], -step * by_e);
-            }
+        for (tau, block) in tau.chunks(LANES).zip(&mut self.0) {
+            let mut steps = F64x8::splat(tau[tau.len() - 1]);
+            steps.0[..tau.len()].copy_from_slice(tau);
+            let [ex, ey, ux, uy] = *block;
+            let (_, by_e, by_u) = on.frame([ex, ey, ux, uy]);
+            let step = (F64x8::splat(forward) * steps).over((by_e * by_e + by_u * by_u).sqrt());
+            let (ex, ey) = turn(ex, ey, step * by_u);
+            let (ux, uy) = turn(ux, uy, -step * by_e);
+            *block = [ex, ey, ux, uy];
         }
     }
 
@@ -120,33 +121,29 @@ impl Blocks {
     /// not get there.
     #[inline(always)]
     pub(in crate::task::forms) fn settle(&mut self, on: &impl Curve) -> bool {
-        let near = on.near();
+        let (near, one) = (on.near(), F64x8::splat(1.0));
         let mut limit = near;
         for round in 0..=RETURN_STEPS {
-            let mut off = [0_u64; LANES];
-            for [ex, ey, ux, uy] in &self.0 {
-                for i in 0..LANES {
-                    let miss = on.frame([ex[i], ey[i], ux[i], uy[i]]).0.abs();
-                    // A NaN miss is not a position.
-                    off[i] |= u64::from(miss > limit || miss.is_nan());
-                }
+            let mut off = false;
+            for block in &self.0 {
+                off |= on.frame(*block).0.abs().any_above(limit);
             }
-            if off == [0; LANES] {
+            if !off {
                 return true;
             }
             if round == RETURN_STEPS {
                 break;
             }
-            for [ex, ey, ux, uy] in &mut self.0 {
-                for i in 0..LANES {
-                    let (miss, by_e, by_u) = on.frame([ex[i], ey[i], ux[i], uy[i]]);
-                    let n2 = by_e * by_e + by_u * by_u;
-                    let long = (miss * miss / n2).sqrt();
-                    let step = -miss / (n2 * if long > 1.0 { long } else { 1.0 });
-                    let step = if miss.abs() <= near { 0.0 } else { step };
-                    (ex[i], ey[i]) = turn(ex[i], ey[i], step * by_e);
-                    (ux[i], uy[i]) = turn(ux[i], uy[i], step * by_u);
-                }
+            for block in &mut self.0 {
+                let [ex, ey, ux, uy] = *block;
+                let (miss, by_e, by_u) = on.frame([ex, ey, ux, uy]);
+                let n2 = by_e * by_e + by_u * by_u;
+                let long = (miss * miss).over(n2).sqrt();
+                let step = (-miss).over(n2 * long.at_least(one, long, one));
+                let step = F64x8::splat(near).at_least(miss.abs(), F64x8::splat(0.0), step);
+                let (ex, ey) = turn(ex, ey, step * by_e);
+                let (ux, uy) = turn(ux, uy, step * by_u);
+                *block = [ex, ey, ux, uy];
             }
             if round + 2 == RETURN_STEPS {
                 // Rounding may keep a position from the last digit.
