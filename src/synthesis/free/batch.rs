@@ -30,18 +30,36 @@ pub(super) struct Batch {
     pub(super) stage: StageState,
 }
 
+/// What a search knows before a batch.
+pub(super) struct Known {
+    /// The error of the best answer, infinite if there is none.
+    pub(super) best: f64,
+    /// Whether its errors are noise.
+    pub(super) in_noise: bool,
+    /// The scatter of the points about the groups' means that the stages have shown.
+    pub(super) scatter: Option<Scatter>,
+}
+
+/// The verdict about the first rounds of a search for one answer.
+pub(super) struct Noise {
+    /// Whether the errors of the best answer are noise.
+    pub(super) is_noise: bool,
+    /// Whether enough rounds have come to equally good answers then.
+    pub(super) is_enough: bool,
+}
+
 impl Batch {
     /// Runs the rounds of a batch with at most `left` evaluations; `stage` is the state of its stage before it, `first` the
-    /// index of its first round in the whole search, `best` the error of the best answer so far, infinite if there is none.
-    /// `scatter` that of other stages. If the first rounds of the search show noise, it ends once half of them are `enough`.
+    /// index of its first round in the whole search. The first batch of a search for one answer asks for the `noise` of its
+    /// first rounds, and ends once half of them are enough.
     pub(super) fn run(
         context: Context<'_>,
         setup: &Setup<'_>,
         stage: &StageState,
         first: u64,
-        (best, scatter): (f64, Option<Scatter>),
+        Known { best, in_noise, scatter }: Known,
         left: u64,
-        enough: impl Fn(&mut Batch) -> bool,
+        noise: impl Fn(&mut Batch) -> Noise,
     ) -> Batch {
         let mut batch = Batch {
             draws: 0,
@@ -52,18 +70,23 @@ impl Batch {
             stage: stage.clone(),
         };
         let near_ends = stage.leading.iter().map(|(_, start)| start.clone()).collect();
-        let common = Common { context, setup, first_of_stage: stage.index, near_ends, best, scatter };
+        let first_of_stage = stage.index;
+        let mut common = Common { context, setup, first_of_stage, near_ends, best, in_noise, scatter };
         // If ends are finished after the rounds and an exact one would end the search, one round runs before the
         // others.
         let split = common.finishes_apart() && setup.single && first == 0;
         let (mut begin, mut end) = (0, if split { 1 } else { BATCH });
         loop {
             let is_exact = batch.wave(&common, begin..end, left.saturating_sub(batch.cost.objective));
-            if is_exact || !batch.whole || end == BATCH || (end == HALF_BATCH && enough(&mut batch)) {
+            if is_exact || !batch.whole || end == BATCH {
                 break;
             }
-            let is_noise = common.scatter(&batch.stage).is_some();
-            (begin, end) = (end, if end == 1 && is_noise { HALF_BATCH } else { BATCH });
+            let noise = noise(&mut batch);
+            if noise.is_enough {
+                break;
+            }
+            common.in_noise = noise.is_noise;
+            (begin, end) = (end, if end == 1 && noise.is_noise { HALF_BATCH } else { BATCH });
         }
         batch.stage.index += BATCH;
         batch.stage.leading.sort_by(|one, other| one.0.0.total_cmp(&other.0.0));

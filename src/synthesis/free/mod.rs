@@ -58,7 +58,7 @@ use crate::synthesis::constants::free::{
     WHOLE_IN_NOISE,
 };
 use crate::task::Problem;
-use batch::Batch;
+use batch::{Batch, Known, Noise};
 use explorations::{Exploration, Explored, Points, explorations};
 use noise::{Scatter, is_noise};
 use round::Setup;
@@ -268,16 +268,20 @@ impl<'a> Free<'a> {
         hits >= NOISE_HITS_FOR_ONE || (hits > 1 && self.at.best_merits.len() >= NOISE_ROUNDS_FOR_ONE)
     }
 
-    /// Returns whether the first rounds of a search for one answer are enough: its errors are noise, and enough of them have
-    /// come to equally good answers.
-    fn is_enough_in_noise(&self, context: Context<'_>, batch: &mut Batch) -> bool {
+    /// Judges the first rounds of a search for one answer: whether its errors are noise, and enough rounds have come to
+    /// equally good answers.
+    fn noise_of(&self, context: Context<'_>, batch: &mut Batch) -> Noise {
+        let of = |is_noise: bool, is_enough: bool| Noise { is_noise, is_enough };
+        if Scatter::of(self.problem, &batch.stage).is_none() {
+            return of(false, false);
+        }
         batch.ends.sort_by(|one, other| one.merit.total_cmp(&other.merit));
         let best = judge_from_the_best(context, &mut batch.ends, self.wanted, self.exact);
-        let Some(error) = best.map(|best| searched(self.problem, &best)) else { return false };
+        let Some(error) = best.map(|best| searched(self.problem, &best)) else { return of(false, false) };
+        let is_noise =
+            error > self.cost_of(NOISE_LEAST).max(self.exact) && is_noise(self.problem, &batch.ends);
         let hits = repeats::came(batch.best_merits.iter().copied(), error, IN_NOISE, self.exact);
-        hits >= NOISE_HITS_FOR_ONE
-            && error > self.cost_of(NOISE_LEAST).max(self.exact)
-            && is_noise(self.problem, &batch.ends)
+        of(is_noise, is_noise && hits >= NOISE_HITS_FOR_ONE)
     }
 
     /// Returns whether a search whose errors are noise has had the evaluations that several answers are worth.
@@ -285,12 +289,13 @@ impl<'a> Free<'a> {
         self.wanted == 1 || self.at.evaluations.objective >= NOISE_EVALUATIONS
     }
 
-    /// Returns the scatter of the points about the means of groups, if it is noise.
-    fn scatter(&self) -> Option<Scatter> {
+    /// Returns what is known before a batch.
+    fn known(&self) -> Known {
         let in_groups = |(e, _): &(&Exploration<'_>, &StageState)| e.explored.points == Points::First;
         let stages = self.explorations.iter().zip(&self.at.stages).filter(in_groups);
         let shown = stages.filter_map(|(_, stage)| Scatter::of(self.problem, stage));
-        shown.filter(|_| self.is_dense()).min_by(|one, other| one.best.total_cmp(&other.best))
+        let scatter = shown.min_by(|one, other| one.best.total_cmp(&other.best));
+        Known { best: self.best_error(), in_noise: self.is_noise(), scatter }
     }
 
     /// Returns whether the target is dense and the errors of the best acceptable end are noise.
@@ -377,9 +382,9 @@ impl Strategy for Free<'_> {
     fn run(&mut self, context: Context<'_>, left: u64) -> (Self::Batch, bool) {
         let now = self.next_stage();
         let first = self.at.counts.batch * BATCH;
-        let (setup, known) = (self.setup(now), (self.best_error(), self.scatter()));
-        let enough = |batch: &mut Batch| self.is_enough_in_noise(context, batch);
-        let batch = Batch::run(context, setup, &self.at.stages[now], first, known, left, enough);
+        let (setup, known) = (self.setup(now), self.known());
+        let noise = |batch: &mut Batch| self.noise_of(context, batch);
+        let batch = Batch::run(context, setup, &self.at.stages[now], first, known, left, noise);
         let whole = batch.whole;
         self.is_cut = !whole;
         ((batch, now), whole)

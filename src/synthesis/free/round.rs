@@ -79,6 +79,8 @@ pub(super) struct Common<'a> {
     pub(super) near_ends: Vec<Start>,
     /// The error of the best answer of the batches before on all points, infinite if there is none.
     pub(super) best: f64,
+    /// Whether the errors of the best answer are noise.
+    pub(super) in_noise: bool,
     /// The scatter of the points about the groups' means that other stages have shown.
     pub(super) scatter: Option<Scatter>,
 }
@@ -87,7 +89,7 @@ impl Common<'_> {
     /// Returns the scatter of the points about the groups' means, if groups are explored, one answer is wanted, and it is
     /// noise.
     pub(super) fn scatter(&self, stage: &StageState) -> Option<Scatter> {
-        if !self.setup.single || self.setup.coarse.is_none() {
+        if !self.in_noise || !self.setup.single || self.setup.coarse.is_none() {
             return None;
         }
         let shown = Scatter::of(self.setup.problem, stage).into_iter().chain(self.scatter);
