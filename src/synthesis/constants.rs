@@ -289,8 +289,8 @@ pub mod free {
     /// Such rounds if one answer is wanted; two suffice if so many independent rounds have run.
     pub const NOISE_HITS_FOR_ONE: usize = 3;
     pub const NOISE_ROUNDS_FOR_ONE: usize = 16;
-    /// The part of the sum of squares that the points of groups scatter about their means, above which it is noise; and the
-    /// most ends that are finished after a wave of rounds then. Chosen by `benches/recovery`.
+    /// The share of the sum of squares that is the scatter of the points about the means of their groups: above it the
+    /// scatter is noise. And the most ends that are finished after a wave of rounds then. Chosen by `benches/recovery`.
     pub const NOISE_SCATTER: f64 = 0.3;
     pub const FINISHED_IN_NOISE: usize = 3;
     /// The part of the evaluations of a round that is cut short, one in so many, that its ends are finished with.

@@ -30,7 +30,7 @@ pub(super) struct Batch {
     pub(super) stage: StageState,
 }
 
-/// What a search knows before a batch.
+/// The best answer of a search before a batch, and the noise of its errors, which limit what a batch has to fit.
 pub(super) struct Known {
     /// The error of the best answer, infinite if there is none.
     pub(super) best: f64,

@@ -145,7 +145,7 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().free.clone());
     if let Some(state) = earlier.filter(|state| state.is_of(problem, &points)) {
         free.at = state.judged_again(problem);
-        free.best = free.judge_from_the_best(context);
+        free.best = judge_from_the_best(context, &mut free.at.ends, free.wanted, free.exact);
     }
     let reason = drive(context, allowance, &mut free);
     let best = free.accepted().iter().map(|c| searched(problem, c)).min_by(f64::total_cmp);
@@ -259,13 +259,15 @@ impl<'a> Free<'a> {
         error > self.cost_of(SMALL) && (many || several || once)
     }
 
-    /// Returns whether enough independent rounds have come to equally good answers, the errors of the best being noise.
-    fn is_believed_in_noise(&self, error: f64) -> bool {
-        let hits = self.within(error, IN_NOISE);
+    /// Returns whether enough of some independent rounds have come to equally good answers, the errors of the best being
+    /// noise; `merits` are the least of each round.
+    fn is_believed_in_noise(&self, error: f64, merits: impl ExactSizeIterator<Item = f64>) -> bool {
+        let rounds = merits.len();
+        let hits = repeats::came(merits, error, IN_NOISE, self.exact);
         if self.wanted > 1 {
             return hits >= NOISE_HITS;
         }
-        hits >= NOISE_HITS_FOR_ONE || (hits > 1 && self.at.best_merits.len() >= NOISE_ROUNDS_FOR_ONE)
+        hits >= NOISE_HITS_FOR_ONE || (hits > 1 && rounds >= NOISE_ROUNDS_FOR_ONE)
     }
 
     /// Judges the first rounds of a search for one answer: whether its errors are noise, and enough rounds have come to
@@ -280,8 +282,7 @@ impl<'a> Free<'a> {
         let Some(error) = best.map(|best| searched(self.problem, &best)) else { return of(false, false) };
         let is_noise =
             error > self.cost_of(NOISE_LEAST).max(self.exact) && is_noise(self.problem, &batch.ends);
-        let hits = repeats::came(batch.best_merits.iter().copied(), error, IN_NOISE, self.exact);
-        of(is_noise, is_noise && hits >= NOISE_HITS_FOR_ONE)
+        of(is_noise, is_noise && self.is_believed_in_noise(error, batch.best_merits.iter().copied()))
     }
 
     /// Returns whether a search whose errors are noise has had the evaluations that several answers are worth.
@@ -314,11 +315,6 @@ impl<'a> Free<'a> {
             !unfit || refused <= KEPT / 4
         });
         ends.truncate(KEPT);
-    }
-
-    /// Judges the known ends from the best on ([`judge_from_the_best`]).
-    fn judge_from_the_best(&mut self, context: Context<'_>) -> Option<Candidate> {
-        judge_from_the_best(context, &mut self.at.ends, self.wanted, self.exact)
     }
 
     /// Returns the judged candidates that are acceptable, or would be after their polish.
@@ -400,7 +396,7 @@ impl Strategy for Free<'_> {
         at.best_merits.extend(batch.best_merits.into_iter().map(Exact));
         at.ends.extend(batch.ends);
         self.sort_ends();
-        self.best = self.judge_from_the_best(context);
+        self.best = judge_from_the_best(context, &mut self.at.ends, self.wanted, self.exact);
     }
 
     fn is_done(&mut self, context: Context<'_>) -> bool {
@@ -409,9 +405,10 @@ impl Strategy for Free<'_> {
         let is_exact = error <= self.exact;
         let hits = self.hits_wanted();
         let is_noise = self.is_noise();
+        let merits = self.at.best_merits.iter().map(|merit| merit.0);
         let believed = self.within(error, SAME_OPTIMUM) >= hits.same
             || self.within(error, NEARLY) >= hits.near
-            || (is_noise && self.is_believed_in_noise(error));
+            || (is_noise && self.is_believed_in_noise(error, merits));
         let batches = self.at.counts.batch;
         let ripe = match self.is_dense() {
             _ if is_exact => believed,

@@ -1,4 +1,4 @@
-//! Errors that are noise: how they are told, and how much of them every linkage has.
+//! Tells whether errors are noise, and how large a part of them is the same for all linkages.
 
 use crate::judge::error::structural_error;
 use crate::mechanism::dot;

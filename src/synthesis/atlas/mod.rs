@@ -32,6 +32,11 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 
+mod compare;
+
+use compare::{Descriptor, HARMONICS, Normal, SideBySide, arcs_apart, descriptors_apart};
+pub(super) use compare::{EVEN, Even, ON_ARC, OnArc, arc_misfits};
+
 /// Number of entries drawn.
 pub const ENTRIES: usize = 30_000;
 /// Entries drawn from one random stream.
@@ -40,66 +45,8 @@ const CHUNK: usize = 500;
 const SEED: u64 = 0x61_746c_6173;
 /// Positions at which a curve is sampled.
 pub(super) const TRACED: usize = 72;
-/// Points evenly along a curve.
-pub(super) const EVEN: usize = 32;
-/// Fourier harmonics of each sign.
-const HARMONICS: usize = 6;
 /// Number of nearest entries that are fitted to the target by similarity.
 const LAID: usize = 2400;
-
-type Descriptor = [f32; 2 * HARMONICS];
-
-/// The x and y coordinates of points, centred and scaled to unit norm.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Normal<const N: usize>([[f32; N]; 2]);
-
-impl<const N: usize> Normal<N> {
-    /// Creates them from `N` points; `None` if all points coincide.
-    pub(super) fn of(points: &[Complex]) -> Option<Self> {
-        let middle = points.iter().sum::<Complex>() / points.len() as f64;
-        let norm = points.iter().map(|p| (p - middle).norm_sqr()).sum::<f64>().sqrt();
-        let mut out = [[0.0; N]; 2];
-        for (m, p) in points.iter().enumerate().take(N) {
-            let q = (p - middle) / norm;
-            (out[0][m], out[1][m]) = (q.re as f32, q.im as f32);
-        }
-        norm.is_normal().then_some(Normal(out))
-    }
-}
-
-/// Points evenly along a closed curve.
-pub(super) type Even = Normal<EVEN>;
-/// Points evenly along an arc.
-pub(super) type OnArc = Normal<ON_ARC>;
-
-impl Even {
-    /// Returns the relative residual of a target fitted by similarity to this curve, for each shift of the first point;
-    /// `ahead`: in the same direction, else reversed.
-    #[inline(always)]
-    pub(super) fn misfits(&self, target: &Even, ahead: bool) -> [f32; EVEN] {
-        // Twice around, so that every shift is a contiguous range.
-        let mut around = [[0.0f32; 2 * EVEN]; 2];
-        for (around, own) in around.iter_mut().zip(&self.0) {
-            around[..EVEN].copy_from_slice(own);
-            around[EVEN..].copy_from_slice(own);
-        }
-        let (mut re, mut im) = ([0.0f32; EVEN], [0.0f32; EVEN]);
-        for m in 0..EVEN {
-            let (tx, ty) = (target.0[0][m], target.0[1][m]);
-            let from = if ahead { m } else { EVEN - m };
-            let (x, y) = (&around[0][from..from + EVEN], &around[1][from..from + EVEN]);
-            for shift in 0..EVEN {
-                re[shift] += x[shift] * tx + y[shift] * ty;
-                im[shift] += x[shift] * ty - y[shift] * tx;
-            }
-        }
-        let mut misfits = [0.0f32; EVEN];
-        for shift in 0..EVEN {
-            misfits[shift] = 1.0 - (re[shift] * re[shift] + im[shift] * im[shift]);
-        }
-        misfits
-    }
-}
 
 /// A linkage of the atlas with the circuit that it runs on.
 #[derive(Clone, Copy, Debug)]
@@ -370,26 +317,6 @@ struct Atlas {
     descriptors: SideBySide<{ 2 * HARMONICS }>,
 }
 
-/// `K` numbers of each of many items, those of [`LANES`] items side by side: so their sums become vector instructions, each
-/// in the order in which that of one item would be added.
-struct SideBySide<const K: usize> {
-    blocks: Vec<[[f32; LANES]; K]>,
-    count: usize,
-}
-
-/// The items that are side by side.
-const LANES: usize = 16;
-
-impl<const K: usize> SideBySide<K> {
-    fn of(items: impl Iterator<Item = [f32; K]>) -> Self {
-        let items: Vec<[f32; K]> = items.collect();
-        let block = |items: &[[f32; K]]| {
-            std::array::from_fn(|k| std::array::from_fn(|lane| items.get(lane).map_or(0.0, |item| item[k])))
-        };
-        SideBySide { blocks: items.chunks(LANES).map(block).collect(), count: items.len() }
-    }
-}
-
 fn atlas() -> &'static Atlas {
     static ATLAS: OnceLock<Atlas> = OnceLock::new();
     once(&ATLAS, || {
@@ -422,8 +349,6 @@ struct Arcs {
     points: SideBySide<{ 2 * ON_ARC }>,
 }
 
-/// Number of points on an arc.
-pub(super) const ON_ARC: usize = 12;
 /// Number of arcs per entry.
 const ARCS: usize = 3;
 /// Least and greatest length of an arc, in parts of the curve's.
@@ -446,81 +371,6 @@ impl Arc {
         let points = Normal::of(&points)?;
         Some((Arc { entry: index as u32, begin: begin as f32, span: span as f32, one_branch }, points))
     }
-}
-
-impl OnArc {
-    /// Returns the x coordinates followed by the y coordinates.
-    fn flat(&self) -> [f32; 2 * ON_ARC] {
-        let Normal([x, y]) = self;
-        std::array::from_fn(|k| if k < ON_ARC { x[k] } else { y[k - ON_ARC] })
-    }
-}
-
-/// Returns the relative residual of a target after the best similarity to an arc, in the target's direction and reversed.
-pub(super) fn arc_misfits(Normal([x, y]): &OnArc, Normal([tx, ty]): &OnArc) -> [f32; 2] {
-    let (mut ahead, mut back) = ([0.0f32; 2], [0.0f32; 2]);
-    for m in 0..ON_ARC {
-        let r = ON_ARC - 1 - m;
-        ahead = [ahead[0] + x[m] * tx[m] + y[m] * ty[m], ahead[1] + x[m] * ty[m] - y[m] * tx[m]];
-        back = [back[0] + x[r] * tx[m] + y[r] * ty[m], back[1] + x[r] * ty[m] - y[r] * tx[m]];
-    }
-    [ahead, back].map(|z| 1.0 - (z[0] * z[0] + z[1] * z[1]))
-}
-
-/// Returns for each arc the relative residual of a target, as [`arc_misfits`] and to the same bits.
-fn arcs_apart(arcs: &SideBySide<{ 2 * ON_ARC }>, Normal([tx, ty]): &OnArc) -> Vec<[f32; 2]> {
-    let mut apart = Vec::with_capacity(LANES * arcs.blocks.len());
-    vectorised(
-        #[inline(always)]
-        || {
-            for points in &arcs.blocks {
-                let (x, y) = points.split_at(ON_ARC);
-                let (mut ahead, mut back) = ([[0.0f32; LANES]; 2], [[0.0f32; LANES]; 2]);
-                for m in 0..ON_ARC {
-                    let r = ON_ARC - 1 - m;
-                    for i in 0..LANES {
-                        ahead[0][i] = ahead[0][i] + x[m][i] * tx[m] + y[m][i] * ty[m];
-                        ahead[1][i] = ahead[1][i] + x[m][i] * ty[m] - y[m][i] * tx[m];
-                        back[0][i] = back[0][i] + x[r][i] * tx[m] + y[r][i] * ty[m];
-                        back[1][i] = back[1][i] + x[r][i] * ty[m] - y[r][i] * tx[m];
-                    }
-                }
-                for i in 0..LANES {
-                    let of = |[x, y]: &[[f32; LANES]; 2]| 1.0 - (x[i] * x[i] + y[i] * y[i]);
-                    apart.push([of(&ahead), of(&back)]);
-                }
-            }
-        },
-    );
-    apart.truncate(arcs.count);
-    apart
-}
-
-/// Returns for each entry the squared distance of its descriptor from the wanted one, in the same direction or reversed,
-/// whichever is less.
-fn descriptors_apart(descriptors: &SideBySide<{ 2 * HARMONICS }>, wanted: &Descriptor) -> Vec<f32> {
-    let mut apart = Vec::with_capacity(LANES * descriptors.blocks.len());
-    vectorised(
-        #[inline(always)]
-        || {
-            for d in &descriptors.blocks {
-                let (mut same, mut reversed) = ([0.0f32; LANES], [0.0f32; LANES]);
-                for k in 0..2 * HARMONICS {
-                    let other = (k + HARMONICS) % (2 * HARMONICS);
-                    for i in 0..LANES {
-                        let (one, two) = (d[k][i] - wanted[k], d[other][i] - wanted[k]);
-                        same[i] += one * one;
-                        reversed[i] += two * two;
-                    }
-                }
-                for i in 0..LANES {
-                    apart.push(same[i].min(reversed[i]));
-                }
-            }
-        },
-    );
-    apart.truncate(descriptors.count);
-    apart
 }
 
 fn arcs() -> &'static Arcs {
@@ -684,40 +534,5 @@ impl Matches {
             positions.push(laid.entry.at(parameter)?);
         }
         starts.from_positions(&laid.entry.ratios, laid.entry.kind, laid.direction, &positions)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_side_by_side_give_the_bits_of_one_at_a_time() {
-        // More than two blocks, the last one not full.
-        const COUNT: usize = 2 * LANES + 3;
-        let mut draws = stream(7, 0);
-        let mut arc = || {
-            let points: Vec<Complex> = (0..ON_ARC)
-                .map(|_| Complex::new(uniform(&mut draws, -1.0, 1.0), uniform(&mut draws, -1.0, 1.0)))
-                .collect();
-            OnArc::of(&points).expect("the points differ")
-        };
-        let (target, arcs): (OnArc, Vec<OnArc>) = (arc(), (0..COUNT).map(|_| arc()).collect());
-        let apart = arcs_apart(&SideBySide::of(arcs.iter().map(OnArc::flat)), &target);
-        let one_at_a_time: Vec<[f32; 2]> = arcs.iter().map(|arc| arc_misfits(arc, &target)).collect();
-        assert_eq!(apart, one_at_a_time);
-
-        let mut descriptor =
-            || -> Descriptor { std::array::from_fn(|_| uniform(&mut draws, 0.0, 1.0) as f32) };
-        let (wanted, descriptors) = (descriptor(), (0..COUNT).map(|_| descriptor()).collect::<Vec<_>>());
-        let one_at_a_time = descriptors.iter().map(|own| {
-            let along = |from: usize| {
-                let differ = |k: usize| own[(k + from) % (2 * HARMONICS)] - wanted[k];
-                (0..2 * HARMONICS).fold(0.0_f32, |sum, k| sum + differ(k) * differ(k))
-            };
-            along(0).min(along(HARMONICS))
-        });
-        let apart = descriptors_apart(&SideBySide::of(descriptors.iter().copied()), &wanted);
-        assert_eq!(apart, one_at_a_time.collect::<Vec<_>>());
     }
 }
