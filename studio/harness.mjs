@@ -149,10 +149,10 @@ export async function example(page, number) {
 /** The problem file that the page saves. */
 export async function problemText(page) {
   await tab(page, "build");
-  const [download] = await Promise.all([
-    page.waitForEvent("download"),
-    page.getByRole("button", { name: "Problem file" }).click(),
-  ]);
+  const coming = page.waitForEvent("download").catch((error) => error);
+  await page.getByRole("button", { name: "Problem file" }).click();
+  const download = await coming;
+  if (download instanceof Error) throw new Error(`the click gave no file, the page says: ${await status(page)}`);
   return readFileSync(await download.path(), "utf8");
 }
 
