@@ -210,6 +210,6 @@ test("every slider-crank through eight points, counted, and they follow a point"
   await page.locator("#kind").selectOption("four-bar");
   await page.waitForSelector("#nine", { state: "hidden" });
   assert.ok(await page.locator("#exact").isDisabled());
-  await end();
   assert.deepEqual(said, []);
+  await end();
 });
