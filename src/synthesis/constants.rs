@@ -340,6 +340,8 @@ pub mod free {
     pub const STRICT_DEG: f64 = 30.0;
     /// The batch that explores linkages whose crank turns fully if the errors are noise.
     pub const TURNING_IN_NOISE: u64 = 1;
+    /// The batch that explores all points of them then, if several answers are wanted. Chosen by the ladder test.
+    pub const TURNING_WHOLE_IN_NOISE: u64 = 5;
     /// The shares of the evaluations if the errors are neither noise nor nearly exact: of the explorations under the
     /// problem's own requirements, with at least [`STRICT_DEG`], and with a crank that turns fully. Chosen by
     /// `benches/strokes` and the ladder test.

@@ -43,7 +43,12 @@ pub(super) struct Explored {
 }
 
 impl Explored {
-    /// Returns the share of the evaluations that the exploration is given, in parts of the sum of all.
+    /// All points under the requirement of a crank that turns fully: explored only in noise, if several answers are wanted.
+    pub(super) const TURNING_WHOLE: Explored =
+        Explored { points: Points::Whole, stricter: Some(Kind::Turning) };
+
+    /// Returns the share of the evaluations that the exploration is given, in parts of the sum of all; 0 if it has its turn
+    /// in noise alone.
     pub(super) fn share(self) -> u64 {
         let shares = match self.stricter {
             None => SHARES,
@@ -83,8 +88,13 @@ impl Exploration<'_> {
     }
 }
 
-/// Returns the explorations of a problem, that of its own requirements and first points before the others.
-pub(super) fn explorations<'a>(problem: &'a Problem, stricter: &'a [Stricter]) -> Vec<Exploration<'a>> {
+/// Returns the explorations of a problem of which so many answers are wanted, that of its own requirements and first points
+/// before the others.
+pub(super) fn explorations<'a>(
+    problem: &'a Problem,
+    stricter: &'a [Stricter],
+    wanted: usize,
+) -> Vec<Exploration<'a>> {
     let of = |points: Points, stricter: Option<Kind>, of: &'a Problem, coarse: Option<Coarse>| {
         let explored = Explored { points, stricter };
         Exploration { explored, of, coarse }
@@ -109,6 +119,6 @@ pub(super) fn explorations<'a>(problem: &'a Problem, stricter: &'a [Stricter]) -
             }
         }
     }
-    all.retain(|one| one.explored.share() > 0);
+    all.retain(|one| one.explored.share() > 0 || (wanted > 1 && one.explored == Explored::TURNING_WHOLE));
     all
 }

@@ -26,8 +26,9 @@
 //! `QUIET_BATCHES` batches brought no new one. Unless the errors are exact or noise, the stricter problems confirm it
 //! with batches of their own. Sparse targets are searched through `LEAST_BATCHES` batches at least, so that rounds
 //! near known ends get their turn. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
-//! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough, after `NOISE_EVALUATIONS` at least:
-//! so the best of several answers is worth comparing with that of another problem. If one answer is wanted, fewer are
+//! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough, after `NOISE_EVALUATIONS` at least,
+//! among them a batch on all points with a crank that turns fully, as a search under that requirement has one: so the best of
+//! several answers is worth comparing with that of another problem. If one answer is wanted, fewer are
 //! enough, and the first batch may end after half of its rounds. The points of a group then scatter about their mean
 //! nearly alike for all linkages ([`mod@noise`]), so that the error of an end on all points can be expected from that on the
 //! groups: few ends are finished, and the others are counted with the error that is expected. If neighbouring residuals are correlated, the linkage misses a shape that another linkage may have. The search
@@ -54,8 +55,8 @@ use crate::synthesis::constants::free::{
     BATCH, CONFIRMING, CORNERS_AT, CORNERS_EVERY, DENSE_CONFIRMING, DENSE_STRICTER, IN_NOISE, KEPT,
     LEAST_BATCHES, LEVEL, LEVEL_HITS, LEVEL_LEAST, LEVEL_TIMES, MANY_HITS, MANY_LEAST, NEARLY_EXACT,
     NOISE_EVALUATIONS, NOISE_HITS, NOISE_HITS_FOR_ONE, NOISE_LEAST, NOISE_ROUNDS_FOR_ONE, PATIENT_BATCHES,
-    QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICTER, TURNING_IN_NOISE, WHOLE_ELSE, WHOLE_EVERY,
-    WHOLE_IN_NOISE,
+    QUIET_BATCHES, QUIET_LEAST, QUIET_TIMES, SMALL, STRICTER, TURNING_IN_NOISE, TURNING_WHOLE_IN_NOISE,
+    WHOLE_ELSE, WHOLE_EVERY, WHOLE_IN_NOISE,
 };
 use crate::task::Problem;
 use batch::{Batch, Known, Noise};
@@ -128,13 +129,14 @@ struct Free<'a> {
 pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found> {
     let problem = context.problem;
     let stricter = stricter(problem);
-    let explorations = explorations(problem, &stricter);
+    let wanted = basins_wanted(problem);
+    let explorations = explorations(problem, &stricter, wanted);
     let starts: Vec<Starts<'_>> = explorations.iter().map(|e| Starts::new(e.problem())).collect();
     let mut free = Free {
         problem,
         explorations: &explorations,
         starts: &starts,
-        wanted: basins_wanted(problem),
+        wanted,
         exact: exact_cost(problem),
         setups: explorations.iter().map(|_| OnceCell::new()).collect(),
         at: FreeState { stages: vec![StageState::BEGUN; explorations.len()], ..FreeState::default() },
@@ -203,7 +205,9 @@ impl<'a> Free<'a> {
         if self.best.is_some() && self.best_error() > self.nearly_exact() && !is_noise {
             let part =
                 |i: &usize| self.at.stages[*i].spent as f64 / self.explorations[*i].explored.share() as f64;
-            return (0..self.explorations.len()).min_by(|i, j| part(i).total_cmp(&part(j))).unwrap_or(0);
+            let has_share = |i: &usize| self.explorations[*i].explored.share() > 0;
+            let stages = (0..self.explorations.len()).filter(has_share);
+            return stages.min_by(|i, j| part(i).total_cmp(&part(j))).unwrap_or(0);
         }
         let on_all_at = if is_noise { WHOLE_IN_NOISE } else { WHOLE_ELSE };
         let (every, strict_at, turning_at) = if self.is_dense() { DENSE_STRICTER } else { STRICTER };
@@ -215,6 +219,7 @@ impl<'a> Free<'a> {
             (under(Kind::Strict), !is_noise && batch % every == strict_at),
             (under(Kind::Turning), !is_noise && batch % every == turning_at),
             (under(Kind::Turning), is_noise && batch == TURNING_IN_NOISE),
+            (Explored::TURNING_WHOLE, is_noise && batch == TURNING_WHOLE_IN_NOISE),
         ];
         let place = |explored: Explored| self.explorations.iter().position(|e| e.explored == explored);
         let stage = wanted.into_iter().filter(|(_, now)| *now).find_map(|(explored, _)| place(explored));
@@ -240,7 +245,10 @@ impl<'a> Free<'a> {
             };
             batches < least || (!believed && batches < most)
         };
-        let is_stricter = |i: &usize| self.explorations[*i].explored.stricter.is_some();
+        let is_stricter = |i: &usize| {
+            let explored = self.explorations[*i].explored;
+            explored.stricter.is_some() && explored.share() > 0
+        };
         let open = (0..self.explorations.len()).filter(is_stricter).filter(|i| is_open(*i));
         open.min_by_key(|i| rounds(*i))
     }
