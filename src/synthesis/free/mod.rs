@@ -193,6 +193,11 @@ impl<'a> Free<'a> {
         stage.unwrap_or_else(|| self.stage_in_turn())
     }
 
+    /// Returns the indices of the stages that are given a share of the evaluations.
+    fn sharing(&self) -> impl Iterator<Item = usize> {
+        (0..self.explorations.len()).filter(|i| self.explorations[*i].explored.share() > 0)
+    }
+
     /// Returns the index of the stage whose turn it is.
     ///
     /// If the errors of the best answer are neither noise nor nearly exact each stage is given its share of the
@@ -205,9 +210,7 @@ impl<'a> Free<'a> {
         if self.best.is_some() && self.best_error() > self.nearly_exact() && !is_noise {
             let part =
                 |i: &usize| self.at.stages[*i].spent as f64 / self.explorations[*i].explored.share() as f64;
-            let has_share = |i: &usize| self.explorations[*i].explored.share() > 0;
-            let stages = (0..self.explorations.len()).filter(has_share);
-            return stages.min_by(|i, j| part(i).total_cmp(&part(j))).unwrap_or(0);
+            return self.sharing().min_by(|i, j| part(i).total_cmp(&part(j))).unwrap_or(0);
         }
         let on_all_at = if is_noise { WHOLE_IN_NOISE } else { WHOLE_ELSE };
         let (every, strict_at, turning_at) = if self.is_dense() { DENSE_STRICTER } else { STRICTER };
@@ -245,11 +248,8 @@ impl<'a> Free<'a> {
             };
             batches < least || (!believed && batches < most)
         };
-        let is_stricter = |i: &usize| {
-            let explored = self.explorations[*i].explored;
-            explored.stricter.is_some() && explored.share() > 0
-        };
-        let open = (0..self.explorations.len()).filter(is_stricter).filter(|i| is_open(*i));
+        let is_stricter = |i: &usize| self.explorations[*i].explored.stricter.is_some();
+        let open = self.sharing().filter(is_stricter).filter(|i| is_open(*i));
         open.min_by_key(|i| rounds(*i))
     }
 
