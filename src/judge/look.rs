@@ -124,14 +124,19 @@ fn span(joints: &Joints) -> f64 {
     (1..joints.len()).flat_map(from).fold(0.0, f64::max)
 }
 
-/// Returns whether a curve lies within `reach` of a closed polygon.
+/// Returns whether a curve lies within `reach` of a closed polygon. The sides of the polygon are looked at from the one that
+/// the last point was near, since the next point is most often near the same or the next.
 fn lies_on(curve: &[Complex], polygon: &[Complex], reach: f64) -> bool {
-    let near = |p: &Complex| {
-        (0..polygon.len()).any(|i| {
-            let (from, to) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+    let count = polygon.len();
+    let mut side = 0;
+    curve.iter().step_by(PROBE_EVERY).all(|p| {
+        let near = |i: &usize| {
+            let (from, to) = (polygon[*i], polygon[(i + 1) % count]);
             let share = nearest_share(*p, [from, to]);
             (p - from - (to - from) * share).norm_sqr() <= reach * reach
-        })
-    };
-    curve.iter().step_by(PROBE_EVERY).all(near)
+        };
+        let found = (side..count).chain(0..side).find(near);
+        side = found.unwrap_or(side);
+        found.is_some()
+    })
 }

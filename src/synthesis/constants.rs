@@ -277,7 +277,8 @@ pub mod free {
     pub const DIFFERENT: f64 = 1e-3;
     /// Rounds that run in parallel before any is read.
     pub const BATCH: u64 = 8;
-    /// Rounds of the first batch after which a search for one answer may end if the errors are noise.
+    /// Rounds of a batch after which a search for one answer may end: of the first if the errors are noise, and of the last of
+    /// `LEAST_BATCHES` and later ones if the target is sparse and of few points.
     pub const HALF_BATCH: u64 = 4;
     /// Relative difference below which errors of noise are equally good: the noise of n points has a sum of squares
     /// with a relative spread of (2/n)^(1/2).
@@ -309,7 +310,7 @@ pub mod free {
     /// Independent rounds that came to the level; least number of evaluations, and evaluations as a multiple of those that
     /// it took to reach the level.
     pub const LEVEL_HITS: usize = 4;
-    pub const LEVEL_LEAST: u64 = 100_000;
+    pub const LEVEL_LEAST: u64 = 120_000;
     pub const LEVEL_TIMES: u64 = 3;
     /// Rounds that came to the level with which this least number of evaluations is enough.
     pub const MANY_HITS: usize = 12;
@@ -371,6 +372,8 @@ pub mod free {
     /// Starts fitted further. On a dense target most lead to the same end: at first one per round, and more rounds.
     pub const MIDDLE: usize = 3;
     pub const DENSE_MIDDLE: usize = 1;
+    /// The same after the first batch of a dense target whose errors are not noise. Chosen by `benches/strokes`.
+    pub const SHAPE_MIDDLE: usize = 2;
     /// Most passes that reassign the points of an end to the curve and fit again.
     pub const REASSIGNED: usize = 6;
     /// Greatest merit after a few steps, in units of the strayed end's merit, at which such a fit is continued.

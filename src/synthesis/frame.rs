@@ -235,7 +235,9 @@ pub(super) fn in_frame<E>(
     frame: &Frame,
     search: impl Fn(Context<'_>) -> Result<SearchOutcome, E>,
 ) -> Result<SearchOutcome, E> {
-    let Some(image) = frame.rounded(context.problem) else { return search(context) };
+    let Some(image) = frame.rounded(context.problem) else {
+        return search(context).map(|outcome| outcome.measured(context));
+    };
     let observer = |progress: &Progress| frame.report(context, progress);
     let mut outcome = search(Context { observer: &observer, ..context.of(&image) })?;
     frame.take_back(context, &mut outcome);

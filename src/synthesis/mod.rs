@@ -256,14 +256,27 @@ impl SearchOutcome {
         let problem = context.problem;
         let own = self.candidates.drain(..).chain(self.others.drain(..));
         let found = before.into_iter().chain(own).chain(after).collect();
-        let (best, others) = divided(problem, found, problem.spec().solve.candidates);
+        (self.candidates, self.others) = divided(problem, found, problem.spec().solve.candidates);
+        self.measure_listed(context);
+    }
+
+    /// Returns the outcome with the distances of its candidates to their whole curves ([`SearchOutcome::measure_listed`]).
+    fn measured(mut self, context: Context<'_>) -> Self {
+        self.measure_listed(context);
+        self
+    }
+
+    /// Computes the distances of the candidates to their whole curves: searches leave them out, since they take most of the
+    /// time of a verdict. Once the budget has stopped, only so many stay in the list as [`SearchOutcome::choose_anew`] says.
+    fn measure_listed(&mut self, context: Context<'_>) {
         let judging = context.budget.judging(context.points());
         let measured = |mut candidate| {
             judging.may_go_on().then(|| {
-                measure_curve(problem, &mut candidate);
+                measure_curve(context.problem, &mut candidate);
                 candidate
             })
         };
-        (self.candidates, self.others) = (best.into_par_iter().filter_map(measured).collect(), others);
+        let listed = std::mem::take(&mut self.candidates);
+        self.candidates = listed.into_par_iter().filter_map(measured).collect();
     }
 }

@@ -150,7 +150,7 @@ pub fn round(context: Context<'_>, starts: &Starts<'_>, index: u64, allowance: u
     let judging = context.judging();
     for start in fitted {
         let end = spender.fit_or_keep(start, LONG_FIT).filter(|_| judging.may_go_on());
-        outcome.found.extend(end.and_then(|(_, end)| judged(problem, &end)));
+        outcome.found.extend(end.and_then(|(_, end)| glanced(problem, &end)));
     }
     outcome.evaluations = spender.cost;
     outcome
@@ -318,10 +318,11 @@ fn judged_with(problem: &Problem, end: &Start, to_curve: Option<CurveErrorRecord
     let task = problem.task();
     if let Timing::Prescribed { crank_angles, offset } = task.timing() {
         let linkage = space.project(&shape.linkage(end.setting.assembly).ok()?).ok()?;
-        let fit = TimedPathFit::new(problem, end.setting)?;
         // An exact multiple of the degrees in the file stays one.
         let base = match offset {
-            AngleOffset::Free => wrapped(fit.offset(&end.design, &shape)).to_degrees(),
+            AngleOffset::Free => {
+                wrapped(TimedPathFit::new(problem, end.setting)?.offset(&end.design, &shape)).to_degrees()
+            }
             AngleOffset::Fixed => 0.0,
             AngleOffset::Ground => linkage.ground_angle().to_degrees(),
         };

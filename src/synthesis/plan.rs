@@ -229,7 +229,7 @@ fn four_bars(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
         Place::AsItIs => None,
         Place::Around(_) => place.image(problem),
     };
-    let Some(near) = near else { return search_here(context) };
+    let Some(near) = near else { return search_here(context).map(|outcome| outcome.measured(context)) };
     let mut outcome = search_here(context.of(&near))?;
     let back = |candidate: &Candidate| place.back(problem, candidate);
     // Also the next best: a linkage that only just closes there may be open here.

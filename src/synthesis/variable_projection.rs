@@ -27,7 +27,7 @@ use super::constants::variable_projection::{
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
 use super::dyads::{Driving, driving_dyad, pair};
 use super::motion::DyadStarts;
-use super::multistart::{LONG_FIT, SHORT_FIT, Spender, by_merit, judged, promise, round};
+use super::multistart::{LONG_FIT, SHORT_FIT, Spender, by_merit, glanced, promise, round};
 use super::polish::{basins_wanted, promising};
 use super::starts::{SLACK_RANGE, Starts, draw_ratios};
 use super::states::{Judged, SearchState, TimedState, of_as_many_points};
@@ -126,7 +126,7 @@ impl Timed<'_> {
             return;
         }
         let problem = self.problem;
-        let Some(candidate) = judged(problem, &end) else { return };
+        let Some(candidate) = glanced(problem, &end) else { return };
         let Start { setting, design, .. } = end;
         self.at.seen.push(Judged { setting, design, accepted: promising(problem, &candidate) });
         self.take(candidate);

@@ -198,22 +198,38 @@ pub fn record(bytes: &[u8]) {
     reports(&record);
 }
 
-/// Small searches of every kind: free timing, prescribed timing, in the physical parameters, populations, a function.
-pub const SEARCHES: [&str; 5] = [
-    "format = 1\nname = \"free\"\n[task.path]\npoints = [[0, 0], [2, 1], [3, 3], [4, 1], [5, 0], [6, -2], [4, -3], [2, -1]]\n\
-     [solve]\ncandidates = 4\nevaluations = 20000\nmethod = \"least-squares\"\n",
-    "format = 1\nname = \"timed\"\n[task.path]\npoints = [[0, 0], [10, 0], [10, 10], [0, 10], [5, 5]]\n\
-     tolerance = 1e-6\n[task.path.timing]\ncrank_deg = [0, 60, 120, 180, 240]\n[require]\n\
-     type = [\"crank-rocker\"]\ntransmission_deg_min = 40\n\
-     [solve]\ncandidates = 2\nevaluations = 6000\nmethod = \"least-squares\"\n",
-    "format = 1\nname = \"genetic\"\n[task.path]\npoints = [[0, 0], [2, 1], [4, 1], [5, 0]]\n\
-     [solve]\nevaluations = 2000\nmethod = \"genetic\"\n[solve.genetic]\npopulation = 8\nelites = 1\n\
-     stall_generations = 4\n",
-    "format = 1\nname = \"differential\"\n[task.path]\npoints = [[0, 0], [2, 1], [4, 1], [5, 0]]\n\
-     [solve]\nevaluations = 2000\nmethod = \"differential-evolution\"\n[solve.differential-evolution]\n\
-     population = 8\nstall_generations = 4\n",
-    "format = 1\nname = \"function\"\n[task.function]\ninput_deg = [0, 20, 40, 60, 80]\noutput_deg = [0, 3, 11, 24, 40]\n\
-     [require]\ntransmission_deg_min = 30\n[solve]\ncandidates = 2\nevaluations = 6000\n",
+/// Small searches of every kind: free timing, prescribed timing, in the physical parameters, populations, a function; each
+/// with the parts of a state from which it goes on.
+pub const SEARCHES: [(&str, &[&str]); 5] = [
+    (
+        "format = 1\nname = \"free\"\n[task.path]\npoints = [[0, 0], [2, 1], [3, 3], [4, 1], [5, 0], [6, -2], [4, -3], [2, -1]]\n\
+         [solve]\ncandidates = 4\nevaluations = 20000\nmethod = \"least-squares\"\n",
+        &["free"],
+    ),
+    (
+        "format = 1\nname = \"timed\"\n[task.path]\npoints = [[0, 0], [10, 0], [10, 10], [0, 10], [5, 5]]\n\
+         tolerance = 1e-6\n[task.path.timing]\ncrank_deg = [0, 60, 120, 180, 240]\n[require]\n\
+         type = [\"crank-rocker\"]\ntransmission_deg_min = 40\n\
+         [solve]\ncandidates = 2\nevaluations = 6000\nmethod = \"least-squares\"\n",
+        &["timed", "rounds"],
+    ),
+    (
+        "format = 1\nname = \"genetic\"\n[task.path]\npoints = [[0, 0], [2, 1], [4, 1], [5, 0]]\n\
+         [solve]\nevaluations = 2000\nmethod = \"genetic\"\n[solve.genetic]\npopulation = 8\nelites = 1\n\
+         stall_generations = 4\n",
+        &["population"],
+    ),
+    (
+        "format = 1\nname = \"differential\"\n[task.path]\npoints = [[0, 0], [2, 1], [4, 1], [5, 0]]\n\
+         [solve]\nevaluations = 2000\nmethod = \"differential-evolution\"\n[solve.differential-evolution]\n\
+         population = 8\nstall_generations = 4\n",
+        &["population"],
+    ),
+    (
+        "format = 1\nname = \"function\"\n[task.function]\ninput_deg = [0, 20, 40, 60, 80]\noutput_deg = [0, 3, 11, 24, 40]\n\
+         [require]\ntransmission_deg_min = 30\n[solve]\ncandidates = 2\nevaluations = 6000\n",
+        &["rounds"],
+    ),
 ];
 
 /// The job of one of [`SEARCHES`].
@@ -223,15 +239,17 @@ pub fn search_job(text: &str) -> Job {
 }
 
 /// Checkpoints: as they are, and signed anew after whatever was done to the state, as somebody could who means harm.
-/// A search that goes on from there comes to an end.
+/// A search that goes on from there comes to an end. Those of which the state holds nothing would begin anew, whatever it
+/// is: they are left out.
 pub fn checkpoint(bytes: &[u8]) {
     if let Err(refusal) = checkpoint::parse("checkpoint.json", bytes) {
         assert!(!refusal.to_string().is_empty());
     }
     let Ok(mut document) = serde_json::from_slice::<serde_json::Value>(bytes) else { return };
     let Some(state) = document.get_mut("state").map(serde_json::Value::take) else { return };
+    let searches = searches_of(&state);
     let Ok(state) = serde_json::from_value::<SearchState>(state) else { return };
-    for text in SEARCHES {
+    for text in searches {
         let job = search_job(text);
         let writer = Writer::new(&job).expect("it has a digest");
         let Some(signed) = writer.bytes(&state) else { return };
@@ -239,6 +257,12 @@ pub fn checkpoint(bytes: &[u8]) {
         assert_eq!(read.leads_to(&job), None);
         go_on(&job, read.into_state(), &writer);
     }
+}
+
+/// The searches of [`SEARCHES`] that go on from a state.
+pub fn searches_of(state: &serde_json::Value) -> Vec<&'static str> {
+    let holds = |part: &&str| state.get(*part).is_some_and(|part| !part.is_null());
+    SEARCHES.into_iter().filter(|(_, parts)| parts.iter().any(holds)).map(|(text, _)| text).collect()
 }
 
 /// Goes on from a state to the second boundary.

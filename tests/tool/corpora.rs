@@ -61,6 +61,11 @@ fn records() {
 #[test]
 fn checkpoints() {
     read_all(&["tests/corpora/checkpoint"], readers::checkpoint);
+    for file in files(&["tests/corpora/checkpoint"]) {
+        let text = std::fs::read_to_string(&file).expect("it can be read");
+        let document: serde_json::Value = serde_json::from_str(&text).expect("it is JSON");
+        assert!(!readers::searches_of(&document["state"]).is_empty(), "{}", file.display());
+    }
 }
 
 /// Remakes the checkpoints that the fuzzer starts from: `cargo test --test tool remake -- --ignored`.
@@ -75,7 +80,7 @@ fn remake_the_corpus_of_checkpoints() {
     use std::time::Duration;
     let folder = root().join("tests/corpora/checkpoint");
     std::fs::create_dir_all(&folder).expect("a folder");
-    for text in readers::SEARCHES {
+    for (text, _) in readers::SEARCHES {
         let job = readers::search_job(text);
         let writer = Writer::new(&job).expect("it has a digest");
         let written = Mutex::new(Vec::new());

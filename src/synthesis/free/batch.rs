@@ -30,7 +30,7 @@ pub(super) struct Batch {
     pub(super) stage: StageState,
 }
 
-/// The best answer of a search before a batch, and the noise of its errors, which limit what a batch has to fit.
+/// Holds what is known before a batch: it limits what the batch has to fit.
 pub(super) struct Known {
     /// The error of the best answer, infinite if there is none.
     pub(super) best: f64,
@@ -38,28 +38,30 @@ pub(super) struct Known {
     pub(super) in_noise: bool,
     /// The scatter of the points about the groups' means that the stages have shown.
     pub(super) scatter: Option<Scatter>,
+    /// Whether half of its rounds may be enough.
+    pub(super) in_halves: bool,
 }
 
-/// The verdict about the first rounds of a search for one answer.
-pub(super) struct Noise {
+/// The verdict about the first rounds of a batch, and all before them, in a search for one answer.
+pub(super) struct SoFar {
     /// Whether the errors of the best answer are noise.
     pub(super) is_noise: bool,
-    /// Whether enough rounds have come to equally good answers then.
+    /// Whether enough rounds have come to equally good answers.
     pub(super) is_enough: bool,
 }
 
 impl Batch {
     /// Runs the rounds of a batch with at most `left` evaluations; `stage` is the state of its stage before it, `first` the
-    /// index of its first round in the whole search. The first batch of a search for one answer asks for the `noise` of its
-    /// first rounds, and ends once half of them are enough.
+    /// index of its first round in the whole search. The first batch of a search for one answer, and one in halves, ask for a
+    /// verdict about their first rounds by `so_far`, and end once these are enough.
     pub(super) fn run(
         context: Context<'_>,
         setup: &Setup<'_>,
         stage: &StageState,
         first: u64,
-        Known { best, in_noise, scatter }: Known,
+        Known { best, in_noise, scatter, in_halves }: Known,
         left: u64,
-        noise: impl Fn(&mut Batch) -> Noise,
+        so_far: impl Fn(&mut Batch) -> SoFar,
     ) -> Batch {
         let mut batch = Batch {
             draws: 0,
@@ -75,18 +77,23 @@ impl Batch {
         // If ends are finished after the rounds and an exact one would end the search, one round runs before the
         // others.
         let split = common.finishes_apart() && setup.single && first == 0;
-        let (mut begin, mut end) = (0, if split { 1 } else { BATCH });
+        let first_wave = match split {
+            true => 1,
+            false if in_halves => HALF_BATCH,
+            false => BATCH,
+        };
+        let (mut begin, mut end) = (0, first_wave);
         loop {
             let is_exact = batch.wave(&common, begin..end, left.saturating_sub(batch.cost.objective));
             if is_exact || !batch.whole || end == BATCH {
                 break;
             }
-            let noise = noise(&mut batch);
-            if noise.is_enough {
+            let so_far = so_far(&mut batch);
+            if so_far.is_enough {
                 break;
             }
-            common.in_noise = noise.is_noise;
-            (begin, end) = (end, if end == 1 && noise.is_noise { HALF_BATCH } else { BATCH });
+            common.in_noise = so_far.is_noise;
+            (begin, end) = (end, if end == 1 && so_far.is_noise { HALF_BATCH } else { BATCH });
         }
         batch.stage.index += BATCH;
         batch.stage.leading.sort_by(|one, other| one.0.0.total_cmp(&other.0.0));

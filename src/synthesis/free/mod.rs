@@ -3,7 +3,9 @@
 //!
 //! A *round* takes `SCREEN` drawn starts, or matches of the atlas if the target has points enough, or starts near known
 //! ends and along the differences between them. It fits the `SHORT` most promising for a few steps, fits the best
-//! `MIDDLE` of those further, and finishes those that can still matter.
+//! `MIDDLE` of those further, and finishes those that can still matter. On a dense target, starts near a known end are fitted
+//! whatever they promise, since the most promising lead back to it; and if errors are not noise the last of the fits
+//! that go further is not the next best, but one of the others in turn.
 //!
 //! Dense targets are explored in groups of points ([`super::coarse`]); now and then all points are explored, or one point
 //! of each group, to find detail that the groups' means blur. The correspondence between the points and the curve is
@@ -25,7 +27,8 @@
 //! optimum that is approached and hardly reached; and either as many distinct answers as were asked for are known or
 //! `QUIET_BATCHES` batches brought no new one. Unless the errors are exact or noise, the stricter problems confirm it
 //! with batches of their own. Sparse targets are searched through `LEAST_BATCHES` batches at least, so that rounds
-//! near known ends get their turn. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
+//! near known ends get their turn; if points are few and one answer is wanted, the last of them and later ones may end
+//! after half of their rounds. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
 //! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough, after `NOISE_EVALUATIONS` at least,
 //! among them a batch on all points with a crank that turns fully, as a search under that requirement has one: so the best of
 //! several answers is worth comparing with that of another problem. If one answer is wanted, fewer are
@@ -59,7 +62,7 @@ use crate::synthesis::constants::free::{
     WHOLE_ELSE, WHOLE_EVERY, WHOLE_IN_NOISE,
 };
 use crate::task::Problem;
-use batch::{Batch, Known, Noise};
+use batch::{Batch, Known, SoFar};
 use explorations::{Exploration, Explored, Points, explorations};
 use noise::{Scatter, is_noise};
 use round::Setup;
@@ -278,10 +281,13 @@ impl<'a> Free<'a> {
         hits >= NOISE_HITS_FOR_ONE || (hits > 1 && rounds >= NOISE_ROUNDS_FOR_ONE)
     }
 
-    /// Judges the first rounds of a search for one answer: whether its errors are noise, and enough rounds have come to
-    /// equally good answers.
-    fn noise_of(&self, context: Context<'_>, batch: &mut Batch) -> Noise {
-        let of = |is_noise: bool, is_enough: bool| Noise { is_noise, is_enough };
+    /// Judges the first rounds of a batch of a search for one answer: whether its errors are noise, and enough rounds have
+    /// come to equally good answers.
+    fn so_far(&self, context: Context<'_>, batch: &mut Batch) -> SoFar {
+        let of = |is_noise: bool, is_enough: bool| SoFar { is_noise, is_enough };
+        if self.may_end_after_half() {
+            return of(false, self.is_believed_with(context, batch));
+        }
         if Scatter::of(self.problem, &batch.stage).is_none() {
             return of(false, false);
         }
@@ -291,6 +297,32 @@ impl<'a> Free<'a> {
         let is_noise =
             error > self.cost_of(NOISE_LEAST).max(self.exact) && is_noise(self.problem, &batch.ends);
         of(is_noise, is_noise && self.is_believed_in_noise(error, batch.best_merits.iter().copied()))
+    }
+
+    /// Returns whether half of the next batch may be enough: the last ones of a search for one answer on a sparse target of few
+    /// points.
+    fn may_end_after_half(&self) -> bool {
+        let has_few = !self.is_dense() && !has_many_points(self.problem);
+        has_few && self.wanted == 1 && self.best.is_some() && self.at.counts.batch + 1 >= LEAST_BATCHES
+    }
+
+    /// Returns whether the best answer is believed with the rounds of a batch that have been read.
+    fn is_believed_with(&self, context: Context<'_>, batch: &mut Batch) -> bool {
+        let known = self.best_error();
+        batch.ends.sort_by(|one, other| one.merit.total_cmp(&other.merit));
+        let better = batch.ends.partition_point(|end| end.merit < known);
+        let best = judge_from_the_best(context, &mut batch.ends[..better], self.wanted, self.exact);
+        let error = best.map_or(known, |best| searched(self.problem, &best).min(known));
+        let merits =
+            || self.at.best_merits.iter().map(|merit| merit.0).chain(batch.best_merits.iter().copied());
+        self.has_hits(error, merits)
+    }
+
+    /// Returns whether as many independent rounds as are wanted have come to an error; `merits` are the least of each round.
+    fn has_hits<I: Iterator<Item = f64>>(&self, error: f64, merits: impl Fn() -> I) -> bool {
+        let wanted = self.hits_wanted();
+        let came = |part: f64| repeats::came(merits(), error, part, self.exact);
+        came(SAME_OPTIMUM) >= wanted.same || came(NEARLY) >= wanted.near
     }
 
     /// Returns whether a search whose errors are noise has had the evaluations that several answers are worth.
@@ -304,7 +336,8 @@ impl<'a> Free<'a> {
         let stages = self.explorations.iter().zip(&self.at.stages).filter(in_groups);
         let shown = stages.filter_map(|(_, stage)| Scatter::of(self.problem, stage));
         let scatter = shown.min_by(|one, other| one.best.total_cmp(&other.best));
-        Known { best: self.best_error(), in_noise: self.is_noise(), scatter }
+        let in_halves = self.may_end_after_half();
+        Known { best: self.best_error(), in_noise: self.is_noise(), scatter, in_halves }
     }
 
     /// Returns whether the target is dense and the errors of the best acceptable end are noise.
@@ -387,8 +420,8 @@ impl Strategy for Free<'_> {
         let now = self.next_stage();
         let first = self.at.counts.batch * BATCH;
         let (setup, known) = (self.setup(now), self.known());
-        let noise = |batch: &mut Batch| self.noise_of(context, batch);
-        let batch = Batch::run(context, setup, &self.at.stages[now], first, known, left, noise);
+        let so_far = |batch: &mut Batch| self.so_far(context, batch);
+        let batch = Batch::run(context, setup, &self.at.stages[now], first, known, left, so_far);
         let whole = batch.whole;
         self.is_cut = !whole;
         ((batch, now), whole)
@@ -411,12 +444,10 @@ impl Strategy for Free<'_> {
         let Some(best) = &self.best else { return false };
         let error = searched(self.problem, best);
         let is_exact = error <= self.exact;
-        let hits = self.hits_wanted();
         let is_noise = self.is_noise();
-        let merits = self.at.best_merits.iter().map(|merit| merit.0);
-        let believed = self.within(error, SAME_OPTIMUM) >= hits.same
-            || self.within(error, NEARLY) >= hits.near
-            || (is_noise && self.is_believed_in_noise(error, merits));
+        let merits = || self.at.best_merits.iter().map(|merit| merit.0);
+        let believed =
+            self.has_hits(error, merits) || (is_noise && self.is_believed_in_noise(error, merits()));
         let batches = self.at.counts.batch;
         let ripe = match self.is_dense() {
             _ if is_exact => believed,

@@ -14,7 +14,7 @@ use crate::synthesis::coarse::Coarse;
 use crate::synthesis::constants::free::{
     ALIKE_ENDS, BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, DENSE_WORTH_DIGITS, DENSE_WORTH_FINISHING,
     FINISHED_IN_NOISE, IN_NOISE, JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED, SCREEN,
-    SEVERAL_WORTH_FINISHING, SHORT, SHORT_FIT, WORTH_DIGITS, WORTH_FINISHING,
+    SEVERAL_WORTH_FINISHING, SHAPE_MIDDLE, SHORT, SHORT_FIT, WORTH_DIGITS, WORTH_FINISHING,
 };
 use crate::synthesis::moves::{along_a_difference, near};
 use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
@@ -102,6 +102,11 @@ impl Common<'_> {
         let setup = self.setup;
         let is_far = self.best.is_finite() && self.best > setup.nearly_exact;
         setup.is_dense() || (is_far && has_many_points(setup.problem))
+    }
+
+    /// Returns whether an answer of a dense target is known whose errors are not noise.
+    fn misses_a_shape(&self) -> bool {
+        self.setup.is_dense() && self.best.is_finite() && !self.in_noise
     }
 
     /// Returns whether a round of the batch is independent: it uses no results of others.
@@ -226,6 +231,31 @@ fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f6
     (drawn, count)
 }
 
+/// Keeps so many starts of a round: those that promise most, or some of all ranks, evenly. Those that promise most of the
+/// starts near a known end are the nearest to it, and lead back to it.
+fn screen<T>(drawn: &mut Vec<(f64, T)>, keep: usize, of_all_ranks: bool) {
+    let count = drawn.len();
+    by_merit(drawn, count);
+    if of_all_ranks && count > keep {
+        for rank in 0..keep {
+            drawn.swap(rank, rank * count / keep);
+        }
+    }
+    drawn.truncate(keep);
+}
+
+/// Keeps so many ends of short fits: the best, and if a `turn` is given in place of the last of them one of the others, each
+/// in its turn. On a target whose shape is missed the merit after a few steps tells little about the merit at the end.
+fn continued<T>(fitted: &mut Vec<(f64, T)>, keep: usize, turn: Option<usize>) {
+    let count = fitted.len();
+    by_merit(fitted, count);
+    if let Some(turn) = turn.filter(|_| keep > 1 && count > keep) {
+        let last = keep - 1;
+        fitted.swap(last, last + turn % (count - last));
+    }
+    fitted.truncate(keep);
+}
+
 /// Runs round `index` of a batch: its ends on the explored points, and on a sparse target the finished ends. `bar` is
 /// the least merit there before it.
 pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, reading: &Reading) -> Round {
@@ -246,14 +276,19 @@ pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, r
     let (mut drawn, draws) = drawn(common, index, &mut spender);
     round.draws = draws;
     let first_look = dense && setup.coarse.is_some() && common.first_of_stage + index < DENSE_BATCHES * BATCH;
-    let (shorts, middles) = if first_look { (DENSE_SHORT, DENSE_MIDDLE) } else { (SHORT, MIDDLE) };
-    by_merit(&mut drawn, shorts);
+    let (shorts, middles) = match first_look {
+        true if common.misses_a_shape() => (DENSE_SHORT, SHAPE_MIDDLE),
+        true => (DENSE_SHORT, DENSE_MIDDLE),
+        false => (SHORT, MIDDLE),
+    };
+    screen(&mut drawn, shorts, dense && !round.independent);
     let spare = drawn.first().cloned();
     let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(shorts);
     for (_, start) in drawn {
         fitted.extend(spender.fit_its_worth(explored, start, SHORT_FIT));
     }
-    by_merit(&mut fitted, middles);
+    let turn = (common.first_of_stage + index) as usize / if round.independent { 1 } else { 2 };
+    continued(&mut fitted, middles, common.misses_a_shape().then_some(turn));
     let mut middle: Vec<(f64, Start)> = Vec::with_capacity(middles);
     for (merit, start) in fitted {
         if unread() {
@@ -422,4 +457,37 @@ pub(super) fn lead_to_digits(
         }
     }
     spender.cost
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn starts_near_a_known_end_are_kept_of_all_ranks() {
+        let kept = |count: u8, keep, of_all_ranks| {
+            let mut drawn: Vec<(f64, u8)> = (0..count).rev().map(|rank| (f64::from(rank), rank)).collect();
+            screen(&mut drawn, keep, of_all_ranks);
+            drawn.into_iter().map(|(_, rank)| rank).collect::<Vec<_>>()
+        };
+        assert_eq!(kept(12, 4, false), [0, 1, 2, 3]);
+        assert_eq!(kept(12, 4, true), [0, 3, 6, 9]);
+        assert_eq!(kept(7, 5, true), [0, 1, 2, 4, 5]);
+        assert_eq!(kept(3, 4, true), [0, 1, 2]);
+        assert_eq!(kept(0, 4, true), [0_u8; 0]);
+    }
+
+    #[test]
+    fn a_fit_that_promises_less_is_continued_in_its_turn() {
+        let kept = |keep, turn| {
+            let mut fitted: Vec<(f64, u8)> = [(3.0, 3), (1.0, 1), (4.0, 4), (2.0, 2)].to_vec();
+            continued(&mut fitted, keep, turn);
+            fitted.into_iter().map(|(_, name)| name).collect::<Vec<_>>()
+        };
+        assert_eq!(kept(2, None), [1, 2]);
+        assert_eq!((0..4).map(|turn| kept(2, Some(turn))[1]).collect::<Vec<_>>(), [2, 3, 4, 2]);
+        assert_eq!(kept(3, Some(1)), [1, 2, 4]);
+        assert_eq!(kept(1, Some(2)), [1], "the best is never given up");
+        assert_eq!(kept(6, Some(2)), [1, 2, 3, 4]);
+    }
 }

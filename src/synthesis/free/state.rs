@@ -1,7 +1,7 @@
 //! The check of a saved state, and the verdicts on its ends.
 
 use crate::synthesis::constants::free::BATCH;
-use crate::synthesis::multistart::judged;
+use crate::synthesis::multistart::glanced;
 use crate::synthesis::states::{End, FreeState};
 use crate::task::Problem;
 use rayon::prelude::*;
@@ -26,7 +26,7 @@ impl FreeState {
     /// Judges the ends again that were judged before the state was saved.
     pub(super) fn judged_again(mut self, problem: &Problem) -> Self {
         let before = self.ends.par_iter_mut().filter(|end| end.judged);
-        before.for_each(|end| end.verdict = judged(problem, &end.start));
+        before.for_each(|end| end.verdict = glanced(problem, &end.start));
         self
     }
 }
@@ -35,7 +35,7 @@ impl End {
     /// Judges the end unless it has been judged before.
     pub(super) fn judge(&mut self, problem: &Problem) {
         if !self.judged {
-            (self.judged, self.verdict) = (true, judged(problem, &self.start));
+            (self.judged, self.verdict) = (true, glanced(problem, &self.start));
         }
     }
 }
