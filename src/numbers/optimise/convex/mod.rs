@@ -146,6 +146,8 @@ const HIGHEST_PRICE: f64 = 1e7;
 const STEER: f64 = 0.7;
 /// The number of accepted steps in a row with hardly any reduction after which a solve counts as converged.
 const QUIET_STEPS: usize = 3;
+/// The part of the largest multiplier of a point above which a point counts as active.
+const ACTIVE: f64 = 1e-6;
 /// The number of programs in a row that cannot be solved after which a solve is given up.
 const FAILED_PROGRAMS: usize = 6;
 
@@ -382,7 +384,7 @@ impl<const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Solve<'_, N, R,
         {
             self.curvature.learn(self.options, &self.at, refused, step);
             model.correct(&refused.blocks, &refused.rows, step);
-            if let Some(second) = model.solve(&self.curvature, self.price) {
+            if let Some(second) = model.solve(&self.curvature, self.price, &self.active()) {
                 let corrected = self.trial(&second);
                 let of_corrected = won(self, &corrected);
                 if of_corrected > gain {
@@ -391,6 +393,14 @@ impl<const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Solve<'_, N, R,
             }
         }
         (gain, trial)
+    }
+
+    /// Returns the points that were active in the last program.
+    fn active(&self) -> Vec<usize> {
+        let shares: &[f64] = self.multipliers.as_ref().map_or(&[], |multipliers| &multipliers.points);
+        let least = ACTIVE * shares.iter().copied().fold(0.0, f64::max);
+        let points = shares.chunks_exact(parts(R)).enumerate();
+        points.filter(|(_, shares)| shares.iter().any(|share| *share > least)).map(|(j, _)| j).collect()
     }
 
     /// Returns a price of twice the multipliers, which is enough to keep to the limits.
@@ -405,10 +415,10 @@ impl<const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Solve<'_, N, R,
 
     /// Solves the program for a step, raising the price of the slack until the lack falls.
     fn steered(&mut self, model: &mut Model<'_, N, R>) -> Option<Step<N, R>> {
-        let mut step = model.solve(&self.curvature, self.price)?;
+        let mut step = model.solve(&self.curvature, self.price, &self.active())?;
         while step.lack > self.slight().max(STEER * self.at.lack) && self.price < HIGHEST_PRICE {
             let dearer = (10.0 * self.price).min(HIGHEST_PRICE);
-            let Some(next) = model.solve(&self.curvature, dearer) else { break };
+            let Some(next) = model.solve(&self.curvature, dearer, &self.active()) else { break };
             self.price = dearer;
             // If a higher price does not reduce the lack, the trust box is the active limit.
             let bought = step.lack - next.lack;

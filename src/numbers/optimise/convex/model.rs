@@ -9,11 +9,12 @@ use crate::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, MAX_TAU, Poin
 use nalgebra::{SMatrix, SVector};
 use std::array::from_fn;
 
-/// The largest number of points that get a cone of their own in the first program, and the largest number added in a
-/// later round: the worst ones.
-const CONES: usize = 48;
+/// The largest number of points that get a cone of their own in the first program because they are the worst, and the
+/// largest number added in a later round. An optimum of N unknowns has some N active ones; the time of a program grows
+/// with all.
+const CONES: usize = 10;
 /// The largest number of rounds in which points that the model puts above the maximum are added.
-const CONE_ROUNDS: usize = 12;
+const CONE_ROUNDS: usize = 30;
 
 /// A step with the predictions of the model.
 #[derive(Clone, Debug)]
@@ -172,19 +173,20 @@ impl<'a, const N: usize, const R: usize> Model<'a, N, R> {
         (point.along(&r, tau), tau)
     }
 
-    /// Minimises the model with a slack at this price; `None` if the program has no solution.
-    pub fn solve(&self, curvature: &Curvature<N>, price: f64) -> Option<Step<N, R>> {
+    /// Minimises the model with a slack at this price; `None` if the program has no solution. `active` are points that are
+    /// likely to be active: those of an earlier program.
+    pub fn solve(&self, curvature: &Curvature<N>, price: f64, active: &[usize]) -> Option<Step<N, R>> {
         if self.goal.tolerances().is_none() {
             return self.solve_with(curvature, price, &[]);
         }
         let n = self.points.len();
-        let size = |j: usize| deviation(&self.after(j, &[0.0; N], None).0, self.tolerances(j));
-        let mut order: Vec<(f64, usize)> = (0..n).map(|j| (size(j), j)).collect();
         let worst_first = |list: &mut Vec<(f64, usize)>| {
             list.sort_by(|one, other| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1)));
         };
+        let mut order = self.possible();
         worst_first(&mut order);
         let mut chosen: Vec<usize> = order.iter().take(CONES).map(|(_, j)| *j).collect();
+        chosen.extend(active);
         chosen.extend(&self.depended);
         for round in 0..CONE_ROUNDS {
             chosen.sort_unstable();
@@ -207,6 +209,39 @@ impl<'a, const N: usize, const R: usize> Model<'a, N, R> {
             chosen.extend(above.iter().take(CONES).map(|(_, j)| *j));
         }
         None
+    }
+
+    /// Returns the points that can be active inside the box, each with its deviation now: above 1, or above what is left of
+    /// the largest one wherever the step leads.
+    fn possible(&self) -> Vec<(f64, usize)> {
+        let now = |j: usize| deviation(&self.after(j, &[0.0; N], None).0, self.tolerances(j));
+        let all: Vec<(f64, f64)> = (0..self.points.len()).map(|j| (now(j), self.reach(j))).collect();
+        let least = match self.is_minimax() {
+            true => all.iter().map(|(now, reach)| now - reach).fold(0.0, f64::max),
+            false => 1.0,
+        };
+        // A little less: rounding must not leave out the largest one itself.
+        let least = least * (1.0 - 1e-9);
+        let possible = all.iter().enumerate().filter(|(_, (now, reach))| now + reach >= least);
+        possible.map(|(j, (now, _))| (*now, j)).collect()
+    }
+
+    /// Returns a bound of the change of a point's deviation inside the box.
+    fn reach(&self, j: usize) -> f64 {
+        let point = &self.points[j];
+        let own = if point.traded { 2.0 * self.tau_limit } else { 0.0 };
+        let of = |part: usize| {
+            let rows = if part == 0 { 0..2 } else { part + 1..part + 2 };
+            let size =
+                |at: &dyn Fn(usize) -> f64| rows.clone().map(|row| at(row).powi(2)).sum::<f64>().sqrt();
+            let by_shared = self.free.iter().map(|&i| {
+                let (down, up) = self.sides[i];
+                size(&|row| point.jacobian[row][i]) * up.max(-down)
+            });
+            by_shared.sum::<f64>() + size(&|row| point.tangent[row]) * own
+        };
+        let reaches = self.tolerances(j).iter().enumerate().map(|(part, tolerance)| of(part) / tolerance);
+        reaches.fold(0.0, f64::max)
     }
 
     /// Computes 2 J^T W J over the components that count of each point, those across the tangent if the own step is a

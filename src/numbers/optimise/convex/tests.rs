@@ -158,6 +158,43 @@ fn curved_residuals_end_where_a_search_without_derivatives_does() {
     assert!(result.evaluations < 25, "{}", result.evaluations);
 }
 
+/// Few of many points decide, and these change from step to step.
+#[test]
+fn of_three_hundred_points_those_that_decide_are_found() {
+    let place = |i: usize| {
+        let t = i as f64;
+        [4.0 * (0.7 * t).cos() + 0.3 * (1.3 * t).sin(), 3.0 * (0.7 * t).sin() + 0.2 * (2.9 * t).cos()]
+    };
+    let residual = |at: [f64; 2]| -> Residual<'static> {
+        Box::new(move |x| [(x[0] - at[0]).hypot(x[1] - at[1]) - 3.4, 0.0])
+    };
+    let residuals = (0..300).map(|i| residual(place(i))).collect();
+    let problem = Plain { bounds: ANYWHERE, residuals, rows: Vec::new() };
+    let tolerances: Vec<f64> = (0..300).map(|i| 1.0 + 0.2 * (0.37 * f64::from(i)).sin()).collect();
+    let deviation = |x: &[f64; 2]| {
+        let parts = problem.residuals.iter().zip(&tolerances).map(|(r, tolerance)| norm(r(x)) / tolerance);
+        parts.fold(0.0, f64::max)
+    };
+    let goal = Goal::MaxDeviation { tolerances: &tolerances };
+    let result = solved(&problem, &goal, [1.5, -2.5]);
+    // A grid may come to rest on a kink: it finds nothing smaller, neither from afar nor from there.
+    for (centre, half) in [([0.0, 0.0], 3.0), (result.x, 0.1)] {
+        let known = by_grid(deviation, centre, half);
+        assert!(result.objective < known + 1e-7, "{} {known}", result.objective);
+    }
+    // A wider band: the least sum of squares in it is at its edge.
+    let band = 1.02 * result.objective;
+    let wide: Vec<f64> = tolerances.iter().map(|tolerance| band * tolerance).collect();
+    let within = solved(&problem, &Goal::SumOfSquaresWithin { tolerances: &wide }, result.x);
+    let sum = |x: &[f64; 2]| problem.cost(x, &()).expect("finite");
+    let inside = |x: &[f64; 2]| if deviation(x) <= band { sum(x) } else { f64::INFINITY };
+    for (centre, half) in [(result.x, 0.5), (within.x, 0.1)] {
+        let known = by_grid(inside, centre, half);
+        assert!(within.objective < known * (1.0 + 1e-6), "{} {known}", within.objective);
+    }
+    assert!(within.deviation < 1.0 + 1e-9 && within.objective < sum(&result.x), "{within:?}");
+}
+
 /// Adds the constraint of the disc |x - (2, 1)| <= radius.
 fn in_disc(mut problem: Plain<'_>, radius: f64) -> Plain<'_> {
     problem.rows.push(Box::new(move |x| radius - (x[0] - 2.0).hypot(x[1] - 1.0)));
