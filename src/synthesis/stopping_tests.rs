@@ -54,7 +54,7 @@ fn counted(job: &Job, stop_at: Option<u64>) -> (Record, Counts) {
 
 /// Stops a job at some of its questions, spread over the run; with `THOROUGH=1`, at more.
 fn asks_often_enough(name: &str, job: &Job) {
-    let stops = if std::env::var_os("THOROUGH").is_some() { 6 } else { 3 };
+    let stops = if std::env::var_os("THOROUGH").is_some() { 6 } else { 2 };
     let n = POINTS as u64;
     let (_, whole) = counted(job, None);
     assert!(whole.asked > 3, "{name}: {whole:?}");
@@ -79,13 +79,13 @@ fn asks_often_enough(name: &str, job: &Job) {
 #[test]
 fn a_search_by_least_squares_asks_about_a_stop_often_enough() {
     for (name, closed, timed) in [("closed", true, false), ("open", false, false)] {
-        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", "3000")]));
+        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", "1500")]));
     }
     for (name, closed) in [("closed, timed", true), ("open, timed", false)] {
-        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", "3000")]));
+        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", "1500")]));
     }
     let limits = [
-        ("solve.evaluations", "3000"),
+        ("solve.evaluations", "1500"),
         ("require.transmission_deg_min", "60"),
         ("require.footprint_in", "[-4, -4, 4, 4]"),
     ];
@@ -96,7 +96,7 @@ fn a_search_by_least_squares_asks_about_a_stop_often_enough() {
 fn a_population_search_asks_about_a_stop_before_each_long_evaluation() {
     for method in ["genetic", "differential-evolution"] {
         for timed in [false, true] {
-            let set = [("solve.method", method), ("solve.evaluations", "700"), ("solve.advice", "false")];
+            let set = [("solve.method", method), ("solve.evaluations", "400"), ("solve.advice", "false")];
             asks_often_enough(method, &job(true, timed, &set));
         }
     }

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "every test file uses its own part of it")]
 
+pub mod thorough;
+
 use linkwright::internals::app::job::run::{Context, Job, run};
 use linkwright::internals::files::problem_file;
 use linkwright::internals::files::problem_file::ProblemFile;
@@ -12,11 +14,6 @@ use std::sync::atomic::AtomicBool;
 /// The project's folder.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// Whether tests are to look as long as `.ci/run` does: `THOROUGH=1`.
-pub fn is_thorough() -> bool {
-    std::env::var_os("THOROUGH").is_some()
 }
 
 /// Every file below `problems/` with this extension.

@@ -1,5 +1,6 @@
 //! Every slider-crank and inverted slider-crank through eight points, beside a computation of their positions from their lengths.
 
+use crate::common::thorough::cases;
 use linkwright::internals::mechanism::{AssemblyMode, CrankLinkage, InvertedSliderCrank, SliderCrank};
 use linkwright::internals::numbers::arithmetic::Complex;
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
@@ -261,12 +262,12 @@ fn all_are_found(closure: Closure, count: u64) {
 
 #[test]
 fn all_slider_cranks_through_eight_points_are_found_and_the_one_that_drew_them_is_among_them() {
-    all_are_found(Closure::SliderCrank, 24);
+    all_are_found(Closure::SliderCrank, cases(8, 24));
 }
 
 #[test]
 fn all_inverted_slider_cranks_through_eight_points_are_found_and_the_one_that_drew_them_is_among_them() {
-    all_are_found(Closure::InvertedSliderCrank, 20);
+    all_are_found(Closure::InvertedSliderCrank, cases(4, 20));
 }
 
 /// The direction of lines whose normal has no size: that of the n which targets have.

@@ -23,3 +23,5 @@ mod referee;
 mod reference;
 mod slider_plates;
 mod sliders;
+#[path = "../common/thorough.rs"]
+mod thorough;

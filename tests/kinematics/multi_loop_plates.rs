@@ -2,6 +2,7 @@
 
 use crate::dyad_chains::drawn;
 use crate::slider_plates::{layered, positions};
+use crate::thorough::cases;
 use linkwright::internals::judge::practicality::clearance::pivot_distances;
 use linkwright::internals::judge::practicality::layers::{Layering, can_be_stacked, layering};
 use linkwright::internals::judge::practicality::sweep::Stretch;
@@ -19,10 +20,13 @@ fn linkages(seed: u64, wanted: usize) -> Vec<MultiLoop> {
         .collect();
     let mut all = Vec::new();
     for kind in kinds.iter().cycle().take(200 * wanted) {
+        if all.len() == wanted {
+            break;
+        }
         let made = MultiLoop::of_dyad_chain(&drawn(*kind, draws)).expect("its lengths are positive");
         let flattest = made.transmissions_between([0.0, std::f64::consts::TAU]);
         let worst = flattest.iter().map(|of| of.worst()).fold(4.0, f64::min);
-        if made.link_ratio() < 15.0 && worst > 0.26 && all.len() < wanted {
+        if made.link_ratio() < 15.0 && worst > 0.26 {
             all.push(made);
         }
     }
@@ -79,7 +83,7 @@ fn holes_lie_where_the_joints_are_and_every_pin_has_one_in_both_of_its_plates() 
 
 #[test]
 fn joints_move_no_farther_than_their_bounds_which_close_in_with_the_stretch() {
-    for (k, linkage) in linkages(62, 40).into_iter().enumerate() {
+    for (k, linkage) in linkages(62, cases(6, 40)).into_iter().enumerate() {
         let sweep = Sweep::of_linkage(linkage).expect("its crank turns fully");
         let parts = parts(&linkage, &sweep);
         let draws = &mut stream(63, k as u64);
@@ -107,8 +111,8 @@ fn joints_move_no_farther_than_their_bounds_which_close_in_with_the_stretch() {
 
 #[test]
 fn distances_of_several_loops_are_bounded_and_near_the_least_of_a_fine_sweep() {
-    let mut stacked = 0;
-    for (i, linkage) in linkages(64, 20).into_iter().enumerate() {
+    let (wanted, mut stacked) = (cases(6, 20), 0);
+    for (i, linkage) in linkages(64, wanted).into_iter().enumerate() {
         let sweep = Sweep::of_linkage(linkage).expect("its crank turns fully");
         let found = layered(i, &sweep);
         let joints = 2 + 3 * linkage.dyad_count();
@@ -124,7 +128,7 @@ fn distances_of_several_loops_are_bounded_and_near_the_least_of_a_fine_sweep() {
         let decided = can_be_stacked(&sweep, &build).expect("it closes");
         assert_eq!(decided, layering(&sweep, &build).expect("it closes").stack.is_some());
     }
-    assert!(stacked > 5, "{stacked} of 20 can be stacked");
+    assert!(stacked > wanted / 4, "{stacked} of {wanted} can be stacked");
 }
 
 /// Checks a stacking by the words of its rules.

@@ -1,6 +1,7 @@
 //! When nothing is acceptable: what conflicts is named, and every change that is proposed works when it is typed.
 
-use crate::common::{bytes, is_thorough, job, literature, load, root, run_on};
+use crate::common::thorough::{cases, is_thorough};
+use crate::common::{bytes, job, literature, load, root, run_on};
 use linkwright::internals::app::job::run::{Context, run};
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::judge::verify::verify;
@@ -268,7 +269,8 @@ fn guide(length: f64, seed: u64, evaluations: u64, set: &[(&str, &str)]) -> Prob
 
 #[test]
 fn a_guide_that_is_possible_is_found_and_named_no_conflict() {
-    for (length, seed) in [(200.0, 1), (200.0, 2), (100.0, 3), (100.0, 4)] {
+    let all = [(200.0, 1), (100.0, 3), (200.0, 2), (100.0, 4)];
+    for (length, seed) in all.into_iter().take(cases(2, 4)) {
         let record = run_on(2, guide(length, seed, 3000, &[]));
         let best = &record.candidates[0];
         assert!(best.accepted && best.error.max < 0.00066 * length, "{length} {seed}: {}", best.error.max);
@@ -280,7 +282,7 @@ fn a_guide_that_is_possible_is_found_and_named_no_conflict() {
 #[test]
 fn more_evaluations_never_make_a_guide_worse() {
     let mut least = f64::INFINITY;
-    for evaluations in [1000, 2000, 4000, 8000] {
+    for evaluations in [1000, 2000, 4000, 8000].into_iter().take(cases(3, 4)) {
         let record = run_on(2, guide(200.0, 1, evaluations, &[]));
         let best = record.candidates.first().filter(|c| c.accepted);
         let rms = best.map_or(f64::INFINITY, |c| c.error.rms);
@@ -307,7 +309,8 @@ fn change(remedy: &Relaxation) -> f64 {
 #[test]
 fn the_nearest_remedy_is_proposed_first() {
     let (mut several, mut is_tolerance) = (0, 0);
-    for (seed, tolerance) in [(1, "0.05"), (2, "0.07"), (3, "0.05"), (3, "0.07")] {
+    let all = [(1, "0.05"), (2, "0.07"), (3, "0.05"), (3, "0.07")];
+    for (seed, tolerance) in all.into_iter().take(cases(2, 4)) {
         let record = run_on(2, guide(200.0, seed, 3000, &[("task.path.tolerance", tolerance)]));
         assert!(record.candidates.iter().all(|c| !c.accepted));
         let remedies = &record.relaxations;
@@ -323,5 +326,6 @@ fn the_nearest_remedy_is_proposed_first() {
         let to: f64 = set.to.to_string().parse().expect("a number");
         assert!(to >= worst && to <= 1.1 * worst, "{to} for {worst}");
     }
-    assert!(several >= 2 && (1..4).contains(&is_tolerance), "{several} {is_tolerance}");
+    assert!(several >= cases(1, 2), "{several}");
+    assert!(!is_thorough() || (1..4).contains(&is_tolerance), "{is_tolerance}");
 }

@@ -1,6 +1,7 @@
 //! Functions whose ranges are free: derivatives, seven pairs exactly, the bounds of the ranges, and what a record may say.
 
 use crate::common::parse;
+use crate::common::thorough::cases;
 use crate::functions::{OFFSETS, assert_true, follower_angle, generated, movable, problem, steps};
 use crate::motion::{ALONE, assert_mostly_small, solved, wrapped};
 use linkwright::internals::judge::assess::assess;
@@ -82,7 +83,7 @@ fn seven_pairs_of_the_sine_are_met_exactly_from_every_seed_and_the_error_between
 fn functions_of_random_linkages_are_found_again_from_the_proportions_of_their_pairs() {
     let draws = &mut stream(97, 0);
     let mut missed = Vec::new();
-    for case in 0..24 {
+    for case in 0..cases(9, 24) {
         let of = generated(draws, [8, 12, 31][case % 3]);
         let base = |all: &[f64]| all.iter().map(|a| a - all[0]).collect::<Vec<f64>>();
         let (inputs, outputs) = (base(&of.crank), base(&of.follower));

@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stdout, reason = "the slow test prints where an answer is worse")]
 
+use crate::common::thorough::cases;
 use crate::invariance::{solved, target};
 use crate::rungs::{NEVER_WORSE, Rung, largest_factor};
 use linkwright::internals::record::Record;
@@ -21,7 +22,7 @@ fn targets() -> std::ops::Range<u64> {
 
 #[test]
 fn a_longer_search_is_never_worse() {
-    for index in 0..12 {
+    for index in 0..cases(6, 12) {
         let errors =
             [600, 2400, 9600, 20_000].map(|evaluations| least_error(&solved(&target(index, evaluations).1)));
         assert!(

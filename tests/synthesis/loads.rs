@@ -59,10 +59,11 @@ fn each_candidate_has_the_peak_torque_of_a_dense_evaluation_and_verify_knows_it(
 #[test]
 fn a_binding_torque_is_used_up_to_its_limit_and_costs() {
     let few = ("solve.candidates", "1");
-    let free = run_on(2, stride(&[few]));
+    let short = ("solve.evaluations", "40000");
+    let free = run_on(2, stride(&[few, short]));
     let limit = 0.9 * peak(&free.candidates[0]);
     let text = limit.to_string();
-    let held = run_on(2, stride(&[few, ("require.peak_torque_max", &text)]));
+    let held = run_on(2, stride(&[few, short, ("require.peak_torque_max", &text)]));
     assert_eq!(verify(&held).expect("it is one"), Vec::new());
     let best = &held.candidates[0];
     assert!(best.accepted, "{:?}", best.requirements);

@@ -1,6 +1,7 @@
 //! Poses of a body: what the search finds, and that every figure of a record is that of the linkage.
 
 use crate::common::parse;
+use crate::common::thorough::cases;
 use crate::poses::{Taken, taken, text, wide};
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::mechanism::{Complex, cross};
@@ -130,7 +131,7 @@ fn from_the_truth(problem: &Problem, taken: &Taken) -> f64 {
 fn poses_of_random_linkages_are_met_and_noisy_ones_fitted_as_well_as_from_the_truth() {
     let draws = &mut stream(71, 0);
     let (mut worse, mut refused) = (Vec::new(), 0);
-    let cases = 60;
+    let cases = cases(12, 60);
     for case in 0..cases {
         let n = [6, 8, 12, 30][case % 4];
         let noise = [0.0, 0.005, 0.02][case % 3];
@@ -249,7 +250,7 @@ fn a_fit_on_its_branch_ends_on_it() {
 #[test]
 fn a_motion_in_another_place_size_and_order_has_the_same_answer() {
     let draws = &mut stream(73, 0);
-    for case in 0..8 {
+    for case in 0..cases(2, 8) {
         let taken = taken(draws, 9, 0.01);
         let wish = if case % 2 == 0 { "" } else { "[require]\npins_in = [-4, -3, 5, 2]\n" };
         let spec = problem(&taken.poses, &format!("{wish}[solve]\ncandidates = 3\nadvice = false\n"));
@@ -284,7 +285,7 @@ fn a_motion_in_another_place_size_and_order_has_the_same_answer() {
 #[test]
 fn what_is_called_accepted_meets_every_requirement() {
     let draws = &mut stream(74, 0);
-    for case in 0..24 {
+    for case in 0..cases(8, 24) {
         let taken = taken(draws, 6 + case % 5, 0.01);
         let at = taken.poses[0].0;
         let size = taken.poses.iter().map(|(p, _)| (p - at).norm()).fold(0.0, f64::max);

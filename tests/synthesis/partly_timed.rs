@@ -1,6 +1,7 @@
 //! Targets with free crank angles among timed ones: derivatives, what the search finds, and that the records are true.
 
 use crate::common::parse;
+use crate::common::thorough::cases;
 use crate::motion::{ALONE, solved};
 use linkwright::internals::judge::practicality::sensitivity::Crank;
 use linkwright::internals::judge::practicality::sensitivity_of;
@@ -83,7 +84,7 @@ fn assert_as_good_as_random_starts(starts: u64, seeds: u64) {
 
 #[test]
 fn a_foot_goes_at_constant_speed_as_well_as_many_random_starts_find() {
-    assert_as_good_as_random_starts(400, 3);
+    assert_as_good_as_random_starts(cases(100, 400), cases(1, 3));
 }
 
 /// Some ten minutes with all starts; fewer by `FOOT_STARTS`.

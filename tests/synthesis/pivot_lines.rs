@@ -145,7 +145,10 @@ fn a_pivot_off_its_line_is_found_out_and_a_line_out_of_reach_is_named() {
     let poses = [(0.0, 0.0, 0.0), (20.0, 10.0, 0.3), (40.0, 12.0, 0.6)];
     let poses = poses.map(|(x, y, angle)| (Complex::new(x, y), angle));
     let of = |lines: &str| {
-        problem(&poses, &format!("tolerance = 1\n[require]\n{lines}\n[solve]\ncandidates = 1\n"))
+        problem(
+            &poses,
+            &format!("tolerance = 1\n[require]\n{lines}\n[solve]\ncandidates = 1\nevaluations = 20000\n"),
+        )
     };
     let mut record = solved(of("pivot_on = { A = [[0, -20], [40, -30]] }"));
     assert_true(&record);

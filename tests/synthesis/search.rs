@@ -160,7 +160,9 @@ fn a_budget_of_evaluations_is_kept() {
     }
 }
 
+/// The README's batch of all examples says daily that each has an accepted answer.
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn every_example_has_an_accepted_answer_that_verifies() {
     for path in
         crate::common::shipped("toml").iter().filter(|p| p.parent().is_some_and(|d| d.ends_with("examples")))

@@ -1,5 +1,6 @@
 //! The suite: published vectors by our referee, figures of many seeds, the command, what it writes.
 
+use crate::common::thorough::cases;
 use crate::common::{job, literature, load, parse, root};
 use assert_cmd::Command;
 use linkwright::internals::app::job::run::{Context, run};
@@ -233,13 +234,19 @@ fn motion(name: &str) -> ProblemFile {
 
 #[test]
 fn answers_of_a_motion_are_compared_by_their_objective_beside_the_population_searches() {
-    let figures = figures(&[motion("lwg-36"), motion("hsieh-20"), motion("bulldozer-blade")], 2);
+    let seeds = cases(1, 2);
+    let figures = figures(&[motion("lwg-36"), motion("hsieh-20"), motion("bulldozer-blade")], seeds);
     assert!(figures.complete && figures.is_accepted());
     let [lwg, hsieh] = figures.problems.as_slice() else { panic!("two of three have something to compare") };
     assert!(matches!(lwg.known, Known::Motion { best_known_objective, .. } if best_known_objective > 104.25));
     for problem in [lwg, hsieh] {
         let summary = &problem.search.summary;
-        assert_eq!((summary.hits, summary.hits_of_best_known), (2, 2), "{}", problem.name);
+        assert_eq!(
+            (summary.hits as u64, summary.hits_of_best_known as u64),
+            (seeds, seeds),
+            "{}",
+            problem.name
+        );
         assert_eq!(problem.smaller_than_best_known, None);
         // After as many evaluations, the same objective of other answers, none of them better.
         assert_eq!((problem.populations.len(), problem.no_populations.as_ref()), (2, None));
@@ -312,7 +319,8 @@ fn an_objective_smaller_than_the_best_known_is_said() {
 #[test]
 fn there_is_no_certificate_of_a_motion_and_the_suite_says_why() {
     let options = Options { seeds: 1, certify: Some(CertifySpec::default()), ..Options::default() };
-    let files = [motion("lwg-36"), motion("kinzel-5")];
+    let mut files = [motion("lwg-36"), motion("kinzel-5")];
+    files.iter_mut().for_each(|file| file.spec.solve.evaluations = 2000);
     let figures = suite(&files, &options, &AtomicBool::new(false), &|_| {}).expect("it runs");
     for problem in &figures.problems {
         assert!(problem.certificate.is_none());
@@ -383,7 +391,9 @@ fn house(problems: &[(&str, &str)]) -> TempDir {
 
 #[test]
 fn the_command_runs_what_the_filter_names() {
-    let (code, stdout, stderr) = answer(linkwright(root()).args(["suite", "k18", "--seeds", "1", "--json"]));
+    let house = house(&[("e5", ""), ("k18", ""), ("k18b", ""), ("k18f", "evaluations = 60000")]);
+    let (code, stdout, stderr) =
+        answer(linkwright(house.path()).args(["suite", "k18", "--seeds", "1", "--json"]));
     assert_eq!(code, Some(0), "{stderr}");
     let json: Value = serde_json::from_str(&stdout).expect("a JSON document alone");
     assert_eq!((&json["complete"], &json["seeds"], &json["threads"]), (&true.into(), &1.into(), &1.into()));

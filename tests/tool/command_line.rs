@@ -261,7 +261,7 @@ fn nothing_acceptable_is_exit_code_one_with_the_reason() {
         "--set",
         "task.path.tolerance=0.001",
         "--set",
-        "solve.evaluations=20000",
+        "solve.evaluations=4000",
     ];
     let run = answer(linkwright(folder.path()).args(args));
     assert_eq!(run.code, 1, "{}", run.stderr);

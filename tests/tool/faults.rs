@@ -1,6 +1,7 @@
 //! Machines are switched off and disks are full: no torn file, no lost result, and an error that says what to do.
 
-use crate::common::{is_thorough, root};
+use crate::common::root;
+use crate::common::thorough::is_thorough;
 use linkwright::internals::app::job::checkpoint;
 use linkwright::internals::app::job::folder::{ResultsFolder, read_record};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, below, stream, unit};
@@ -15,7 +16,7 @@ use tempfile::TempDir;
 const PROGRAM: &str = env!("CARGO_BIN_EXE_linkwright");
 /// Returns how many processes are killed.
 fn kills_wanted() -> usize {
-    if is_thorough() { 200 } else { 80 }
+    if is_thorough() { 200 } else { 40 }
 }
 
 /// A job of some milliseconds: searching and writing take about the same time.

@@ -299,7 +299,7 @@ mod tests {
             let angle = linkage.mobility().arc(Circuit { index: 0 }).map_or(0.3, |arc| arc.middle);
             let curve = CouplerCurve::through(&linkage, angle, AssemblyMode::Plus, DEFAULT_SAMPLES);
             let step = TAU / DEFAULT_SAMPLES as f64;
-            for _ in 0..400 {
+            for _ in 0..100 {
                 let to = Complex::new(uniform(draws, -9.0, 12.0), uniform(draws, -9.0, 9.0));
                 let nearest = curve.nearest(to).expect("a curve");
                 let least = (0..DEFAULT_SAMPLES)

@@ -201,8 +201,9 @@ mod tests {
     }
 
     fn searched(problem: &Problem) -> Vec<Candidate> {
-        let job =
-            Job { name: "egg".into(), source: None, unit: None, spec: problem.spec().clone(), front: None };
+        let mut spec = problem.spec().clone();
+        (spec.solve.evaluations, spec.solve.advice) = (30_000, false);
+        let job = Job { name: "egg".into(), source: None, unit: None, spec, front: None };
         let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
         run(&job, &context).expect("it runs").record.candidates
     }
