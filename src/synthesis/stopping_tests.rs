@@ -52,9 +52,19 @@ fn counted(job: &Job, stop_at: Option<u64>) -> (Record, Counts) {
     })
 }
 
+/// Returns the evaluations of a job: `of_every_day`, or twice as many with `THOROUGH=1`.
+fn evaluations(of_every_day: u32) -> String {
+    let times = if is_thorough() { 2 } else { 1 };
+    (times * of_every_day).to_string()
+}
+
+fn is_thorough() -> bool {
+    std::env::var_os("THOROUGH").is_some()
+}
+
 /// Stops a job at some of its questions, spread over the run; with `THOROUGH=1`, at more.
 fn asks_often_enough(name: &str, job: &Job) {
-    let stops = if std::env::var_os("THOROUGH").is_some() { 6 } else { 2 };
+    let stops = if is_thorough() { 6 } else { 2 };
     let n = POINTS as u64;
     let (_, whole) = counted(job, None);
     assert!(whole.asked > 3, "{name}: {whole:?}");
@@ -79,13 +89,14 @@ fn asks_often_enough(name: &str, job: &Job) {
 #[test]
 fn a_search_by_least_squares_asks_about_a_stop_often_enough() {
     for (name, closed, timed) in [("closed", true, false), ("open", false, false)] {
-        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", "1500")]));
+        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", &evaluations(1500))]));
     }
     for (name, closed) in [("closed, timed", true), ("open, timed", false)] {
-        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", "1500")]));
+        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", &evaluations(1500))]));
     }
+    let few = evaluations(1500);
     let limits = [
-        ("solve.evaluations", "1500"),
+        ("solve.evaluations", few.as_str()),
         ("require.transmission_deg_min", "60"),
         ("require.footprint_in", "[-4, -4, 4, 4]"),
     ];
@@ -96,7 +107,11 @@ fn a_search_by_least_squares_asks_about_a_stop_often_enough() {
 fn a_population_search_asks_about_a_stop_before_each_long_evaluation() {
     for method in ["genetic", "differential-evolution"] {
         for timed in [false, true] {
-            let set = [("solve.method", method), ("solve.evaluations", "400"), ("solve.advice", "false")];
+            let set = [
+                ("solve.method", method),
+                ("solve.evaluations", &evaluations(400)),
+                ("solve.advice", "false"),
+            ];
             asks_often_enough(method, &job(true, timed, &set));
         }
     }

@@ -295,11 +295,12 @@ mod tests {
     fn interpolation_finds_what_golden_section_finds() {
         let draws = &mut stream(7, 0);
         let (mut interpolated, mut tried) = (0, 0);
+        let places = if std::env::var_os("THOROUGH").is_some() { 400 } else { 100 };
         for linkage in linkages() {
             let angle = linkage.mobility().arc(Circuit { index: 0 }).map_or(0.3, |arc| arc.middle);
             let curve = CouplerCurve::through(&linkage, angle, AssemblyMode::Plus, DEFAULT_SAMPLES);
             let step = TAU / DEFAULT_SAMPLES as f64;
-            for _ in 0..100 {
+            for _ in 0..places {
                 let to = Complex::new(uniform(draws, -9.0, 12.0), uniform(draws, -9.0, 9.0));
                 let nearest = curve.nearest(to).expect("a curve");
                 let least = (0..DEFAULT_SAMPLES)
