@@ -248,7 +248,7 @@ fn targets_in_special_position_are_counted_as_found_and_nothing_hangs() {
             }),
             ("half a turn apart", (0..n).map(|j| row(j, &place, &|j| 180.0 * (j % 2) as f64)).collect()),
         ];
-        for (name, rows) in sets {
+        for (name, rows) in sets.into_iter().skip(cases(poses % 2, 0)).step_by(cases(2, 1)) {
             let record = solved(&rows, "time_limit_s = 60\n");
             assert_ne!(record.termination.reason, Reason::TimeLimit, "{poses} {name}");
             let exact = record.exact.as_ref().expect("exact answers");

@@ -267,7 +267,7 @@ fn all_slider_cranks_through_eight_points_are_found_and_the_one_that_drew_them_i
 
 #[test]
 fn all_inverted_slider_cranks_through_eight_points_are_found_and_the_one_that_drew_them_is_among_them() {
-    all_are_found(Closure::InvertedSliderCrank, cases(4, 20));
+    all_are_found(Closure::InvertedSliderCrank, cases(2, 20));
 }
 
 /// The direction of lines whose normal has no size: that of the n which targets have.

@@ -1,6 +1,7 @@
 //! Layers and least distances against a brute-force sweep of the plates' outlines; sensitivities against Monte Carlo.
 
 use crate::random::{TYPES, linkage};
+use crate::thorough;
 use linkwright::internals::judge::practicality::clearance::{Workpieces, pivot_distances};
 use linkwright::internals::judge::practicality::closest::{MARGIN, RELATIVE};
 use linkwright::internals::judge::practicality::layers::{FREE_PAIRS, clear, layering};
@@ -110,7 +111,7 @@ fn swept(seed: u64, count: u64) -> impl Iterator<Item = (FourBar, Sweep, Build)>
 #[test]
 fn plates_that_share_a_plane_are_those_whose_outlines_never_meet_in_a_brute_force_sweep() {
     let (mut apart, mut met) = (0, 0);
-    for (i, (l, sweep, build)) in swept(41, 250).enumerate() {
+    for (i, (l, sweep, build)) in swept(41, thorough::cases(100, 250)).enumerate() {
         let pieces = Workpieces::new(&sweep, &build).expect("it closes");
         let plates = Plate::all(&l, build.plate_radius);
         let positions = positions(&sweep, 600);
@@ -145,12 +146,12 @@ fn plates_that_share_a_plane_are_those_whose_outlines_never_meet_in_a_brute_forc
             }
         }
     }
-    assert!(apart > 60 && met > 60, "{apart} apart, {met} met");
+    assert!(apart > thorough::cases(20, 60) && met > thorough::cases(20, 60), "{apart} apart, {met} met");
 }
 
 #[test]
 fn no_distance_is_below_its_bound_and_each_is_near_the_least_of_a_fine_sweep() {
-    for (i, (l, sweep, build)) in swept(42, 100).enumerate() {
+    for (i, (l, sweep, build)) in swept(42, thorough::cases(40, 100)).enumerate() {
         let found = layering(&sweep, &build).expect("it closes");
         let positions = positions(&sweep, 2000);
         let size = l.longest_link();
@@ -267,7 +268,7 @@ fn fewest_by_brute_force(l: &FourBar, sweep: &Sweep, build: Build) -> Option<usi
 #[test]
 fn the_fewest_layers_are_those_of_every_stacking_tried_by_brute_force() {
     let mut seen = std::collections::BTreeMap::new();
-    for (i, (l, sweep, build)) in swept(44, 150).enumerate() {
+    for (i, (l, sweep, build)) in swept(44, thorough::cases(50, 150)).enumerate() {
         let found = layering(&sweep, &build).expect("it closes");
         let near =
             found.free_pairs.iter().map(|p| p.closest).chain(found.pins_plates.iter().map(|p| p.closest));

@@ -345,6 +345,7 @@ fn record(name: &str, set: &[(&str, &str)]) -> Record {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn e5_is_a_proved_optimum() {
     let record = record("e5", &[]);
     let proof = whole(&record, 1e-4);

@@ -21,6 +21,7 @@ fn more(mut proof: Proof, batches: usize, threads: usize) -> Proof {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn a_stopped_search_goes_on_to_the_same_bytes_on_any_number_of_threads() {
     let record = k18();
     let unbroken = stopped(&record, GAP.gap, 60);

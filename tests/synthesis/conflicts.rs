@@ -105,6 +105,7 @@ fn every_proposal_that_is_typed_in_ends_with_an_accepted_candidate() {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn proposals_that_are_typed_in_end_with_accepted_candidates() {
     let quick = |(path, set, _): &(PathBuf, Set<'_>, &str)| {
         set.len() == 1 && !path.ends_with("walking-stride.toml") || path.ends_with("e5.toml")
@@ -280,6 +281,7 @@ fn a_guide_that_is_possible_is_found_and_named_no_conflict() {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn more_evaluations_never_make_a_guide_worse() {
     let mut least = f64::INFINITY;
     for evaluations in [1000, 2000, 4000, 8000].into_iter().take(cases(3, 4)) {
@@ -307,6 +309,7 @@ fn change(remedy: &Relaxation) -> f64 {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn the_nearest_remedy_is_proposed_first() {
     let (mut several, mut is_tolerance) = (0, 0);
     let all = [(1, "0.05"), (2, "0.07"), (3, "0.05"), (3, "0.07")];

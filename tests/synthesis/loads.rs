@@ -1,5 +1,6 @@
 //! Torques of linkages that are searched for: what the judge computes, what a search holds, and what a front trades off.
 
+use crate::common::thorough::cases;
 use crate::common::{parse, run_on};
 use linkwright::internals::files::problem_file;
 use linkwright::internals::judge::verify::verify;
@@ -59,7 +60,7 @@ fn each_candidate_has_the_peak_torque_of_a_dense_evaluation_and_verify_knows_it(
 #[test]
 fn a_binding_torque_is_used_up_to_its_limit_and_costs() {
     let few = ("solve.candidates", "1");
-    let short = ("solve.evaluations", "40000");
+    let short = ("solve.evaluations", cases("15000", "40000"));
     let free = run_on(2, stride(&[few, short]));
     let limit = 0.9 * peak(&free.candidates[0]);
     let text = limit.to_string();

@@ -257,7 +257,9 @@ fn a_motion_in_another_place_size_and_order_has_the_same_answer() {
         let record = solved(spec.clone());
         let Some(best) = record.candidates.first() else { continue };
         for (mirrors, turns, reversed) in
-            [(false, 1, false), (true, 2, false), (false, 3, true), (true, 0, true)]
+            [(true, 1, true), (false, 2, false), (false, 3, true), (true, 0, false)]
+                .into_iter()
+                .take(cases(2, 4))
         {
             let by = Similarity {
                 from: [1.0, 2.0],
@@ -285,7 +287,7 @@ fn a_motion_in_another_place_size_and_order_has_the_same_answer() {
 #[test]
 fn what_is_called_accepted_meets_every_requirement() {
     let draws = &mut stream(74, 0);
-    for case in 0..cases(8, 24) {
+    for case in 0..cases(4, 24) {
         let taken = taken(draws, 6 + case % 5, 0.01);
         let at = taken.poses[0].0;
         let size = taken.poses.iter().map(|(p, _)| (p - at).norm()).fold(0.0, f64::max);
@@ -394,7 +396,7 @@ fn every_motion_of_the_collection_comes_to_its_best_known_objective() {
         let set: Vec<_> = set.map(|(key, value)| (key.to_owned(), value.to_owned())).to_vec();
         let problem = linkwright::load_problem(&path, &set).unwrap_or_else(|why| panic!("{why}"));
         let size = problem.spec.task.to_task().expect("a task").size();
-        for seed in [1, 2] {
+        for seed in 1..=cases(1, 2) {
             let mut spec = problem.spec.clone();
             spec.solve.seed = seed;
             let record = solved(spec);
@@ -418,6 +420,7 @@ fn every_motion_of_the_collection_comes_to_its_best_known_objective() {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn exact_poses_are_met_and_the_others_approached() {
     let text = |lines: &str| {
         format!(

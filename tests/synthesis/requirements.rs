@@ -37,7 +37,7 @@ fn requirement(record: &Record, name: &str) -> Figure {
 
 #[test]
 fn each_requirement_is_met_where_it_binds() {
-    let free = accepted_and_true(&egg("[require]\ntype = [\"crank-rocker\"]\n"));
+    let free = accepted_and_true(&egg("[require]\ntype = [\"crank-rocker\"]\n[solve]\ncandidates = 1\n"));
     let cases = [
         "transmission_deg_min = 45",
         "link_ratio_max = 2.5",
@@ -46,7 +46,9 @@ fn each_requirement_is_met_where_it_binds() {
         "direction = \"cw\"",
     ];
     for line in cases {
-        let record = accepted_and_true(&egg(&format!("[require]\ntype = [\"crank-rocker\"]\n{line}\n")));
+        let record = accepted_and_true(&egg(&format!(
+            "[require]\ntype = [\"crank-rocker\"]\n{line}\n[solve]\ncandidates = 1\n"
+        )));
         // A requirement can only cost.
         assert!(
             record.candidates[0].error.sum_sq >= free.candidates[0].error.sum_sq * (1.0 - 1e-6),

@@ -2,6 +2,7 @@
 //! which some are free, free ranges of functions; and the cognates of slider-cranks.
 
 use crate::common::parse;
+use crate::common::thorough::cases;
 use crate::motion::{ALONE, solved};
 use crate::sliders::{inverted, slider_crank};
 use linkwright::internals::judge::rank::is_exact;
@@ -35,9 +36,14 @@ fn deviations(candidate: &Candidate, points: &[[f64; 2]]) -> Vec<f64> {
 const ARC: [[f64; 2]; 7] =
     [[0.0, 0.0], [20.0, 14.0], [40.0, 21.0], [60.0, 25.0], [80.0, 21.0], [100.0, 12.0], [120.0, 0.0]];
 
+/// The kinds that a test looks at: one of them every day, all with `THOROUGH=1`.
+fn kinds(of_every_day: usize) -> &'static [&'static str] {
+    cases(&KINDS[of_every_day..=of_every_day], &KINDS[..])
+}
+
 #[test]
 fn poses_are_met_exactly_where_they_have_to_be() {
-    for kind in KINDS {
+    for kind in kinds(0) {
         let text = format!(
             "format = 1\n[task.motion]\nposes = [[0, 0, 0], [10, 12, 12], [22, 20, 31], [38, 22, 49], [55, 18, 66], \
              [70, 8, 80]]\nexact = [0, 5]\n[design]\nmechanism = \"{kind}\"\n{ALONE}"
@@ -60,7 +66,7 @@ fn poses_are_met_exactly_where_they_have_to_be() {
 
 #[test]
 fn the_ends_of_a_path_are_met_exactly_and_the_rest_within_its_tolerances() {
-    for kind in KINDS {
+    for kind in kinds(1) {
         let text = format!(
             "format = 1\n[task.path]\npoints = {ARC:?}\ntolerance = [0, 4, 4, 4, 4, 4, 0]\n[design]\n\
              mechanism = \"{kind}\"\n{ALONE}"
@@ -85,7 +91,7 @@ fn rounded_triangle() -> Vec<[f64; 2]> {
 #[test]
 fn the_largest_deviation_is_smaller_than_that_of_least_squares_and_many_points_share_it() {
     let points = rounded_triangle();
-    for kind in KINDS {
+    for kind in kinds(0) {
         let with = |more: &str| {
             best(&format!(
                 "format = 1\n[task.path]\nclosed = true\npoints = {points:?}\n{more}[design]\nmechanism = \"{kind}\"\n{ALONE}"

@@ -233,6 +233,7 @@ fn motion(name: &str) -> ProblemFile {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn answers_of_a_motion_are_compared_by_their_objective_beside_the_population_searches() {
     let seeds = cases(1, 2);
     let figures = figures(&[motion("lwg-36"), motion("hsieh-20"), motion("bulldozer-blade")], seeds);
@@ -306,7 +307,8 @@ fn paths_and_motions_of_one_suite_have_tables_of_their_own() {
 fn an_objective_smaller_than_the_best_known_is_said() {
     let mut file = motion("lwg-36");
     file.expect.as_mut().expect("it expects something").objective = Some(200.0);
-    let beaten = figures(&[file], 1);
+    let options = Options { seeds: 1, population_seeds: 0, ..Options::default() };
+    let beaten = suite(&[file], &options, &AtomicBool::new(false), &|_| {}).expect("it runs");
     let smaller = beaten.problems[0].smaller_than_best_known.as_ref().expect("104.25 is smaller than 200");
     assert!((smaller.figure() - 104.250_851_098_746).abs() < 1e-9 && smaller.sum_sq < 20.0);
     let text = suite_text(&beaten, Colour::Never);
@@ -318,7 +320,8 @@ fn an_objective_smaller_than_the_best_known_is_said() {
 
 #[test]
 fn there_is_no_certificate_of_a_motion_and_the_suite_says_why() {
-    let options = Options { seeds: 1, certify: Some(CertifySpec::default()), ..Options::default() };
+    let certify = Some(CertifySpec::default());
+    let options = Options { seeds: 1, population_seeds: 0, certify, ..Options::default() };
     let mut files = [motion("lwg-36"), motion("kinzel-5")];
     files.iter_mut().for_each(|file| file.spec.solve.evaluations = 2000);
     let figures = suite(&files, &options, &AtomicBool::new(false), &|_| {}).expect("it runs");

@@ -15,6 +15,7 @@
 mod session;
 
 use crate::common::root;
+use crate::common::thorough::is_thorough;
 use session::{Block, blocks, matches, mended, of_console, of_sh, shape};
 use std::collections::BTreeSet;
 use std::fs;
@@ -53,6 +54,21 @@ fn documents() -> Vec<PathBuf> {
 
 fn writing() -> bool {
     std::env::var_os("LINKWRIGHT_WRITE_DOCS").is_some()
+}
+
+/// The beginning of a command of a quarter of a minute that the README shows too: where another page shows the same of it, it
+/// runs in the README alone, and with `THOROUGH=1` in every page.
+const IN_THE_README: &str = "linkwright synth problems/shapes/heart.toml --set 'design.mechanism=[";
+
+/// What the README shows of a command that begins with [`IN_THE_README`].
+fn shown_in_the_readme() -> Vec<String> {
+    let text = fs::read_to_string(root().join("README.md")).expect("it can be read");
+    let page: Vec<String> = text.lines().map(str::to_owned).collect();
+    let of =
+        |block: &Block| of_console(block).into_iter().find(|step| step.command.starts_with(IN_THE_README));
+    let step = blocks(&page).iter().filter(|block| block.info == "console").find_map(of);
+    let shown = step.and_then(|step| step.shown).expect("the README shows it");
+    shown.into_iter().map(|(_, text)| text).collect()
 }
 
 struct Answer {
@@ -130,6 +146,16 @@ fn faults(place: &Path) -> Vec<String> {
         let mut steps = steps.into_iter().peekable();
         while let Some(step) = steps.next() {
             if OF_THE_BUILD.iter().any(|build| step.command.starts_with(build)) {
+                continue;
+            }
+            let is_here = |shown: &Vec<(usize, String)>| {
+                shown
+                    .iter()
+                    .map(|(_, text)| text.as_str())
+                    .eq(shown_in_the_readme().iter().map(String::as_str))
+            };
+            let elsewhere = name != "README.md" && step.command.starts_with(IN_THE_README);
+            if elsewhere && !is_thorough() && !writing() && step.shown.as_ref().is_some_and(is_here) {
                 continue;
             }
             let answer = answer(folder.path(), &step.command);
