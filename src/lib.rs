@@ -60,6 +60,9 @@ mod record;
 mod report;
 mod synthesis;
 mod task;
+#[cfg(test)]
+#[path = "../tests/common/thorough.rs"]
+mod thorough;
 
 pub use app::job::run::{Context, Finished, Job, RunError, prove, run};
 pub use files::diagnostic::Diagnostic;

@@ -7,6 +7,7 @@ use crate::app::job::run::{Context, Job, run};
 use crate::files::problem_file::parse;
 use crate::mechanism::effort::counted::{Counts, begin, counts};
 use crate::record::{Reason, Record};
+use crate::thorough::is_thorough;
 use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
@@ -56,10 +57,6 @@ fn counted(job: &Job, stop_at: Option<u64>) -> (Record, Counts) {
 fn evaluations(of_every_day: u32) -> String {
     let times = if is_thorough() { 2 } else { 1 };
     (times * of_every_day).to_string()
-}
-
-fn is_thorough() -> bool {
-    std::env::var_os("THOROUGH").is_some()
 }
 
 /// Stops a job at some of its questions, spread over the run; with `THOROUGH=1`, at more.

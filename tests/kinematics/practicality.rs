@@ -146,7 +146,7 @@ fn plates_that_share_a_plane_are_those_whose_outlines_never_meet_in_a_brute_forc
             }
         }
     }
-    assert!(apart > thorough::cases(20, 60) && met > thorough::cases(20, 60), "{apart} apart, {met} met");
+    assert!(apart > thorough::cases(24, 60) && met > thorough::cases(24, 60), "{apart} apart, {met} met");
 }
 
 #[test]

@@ -32,8 +32,8 @@ fn in_every_record() -> bool {
     is_thorough() || std::env::var_os("EVERY_LEAF").is_some()
 }
 
-/// Whether a key is changed every day: of the keys of linkages beside the candidates, which are checked as those of a candidate,
-/// a fourth, chosen by the length of its name.
+/// Returns whether a key is changed every day: of the keys of linkages beside the candidates, which are checked as those of a
+/// candidate, a fourth, chosen by the length of their names.
 fn is_of_every_day(key: &str) -> bool {
     BESIDE.iter().all(|beside| !key.starts_with(beside)) || key.len().is_multiple_of(4)
 }

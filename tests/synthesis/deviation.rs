@@ -177,7 +177,8 @@ fn a_weighted_sum_that_ranks_is_shown() {
 
 #[test]
 fn weights_do_not_enter_the_largest_deviation() {
-    let set = [LARGEST, ("solve.candidates", "1"), ("solve.evaluations", "30000")];
+    let set =
+        [LARGEST, ("solve.candidates", cases("1", "3")), ("solve.evaluations", cases("30000", "200000"))];
     let plain = literature("k18", &set);
     let mut weighted = literature("k18", &set);
     weighted.spec.task.weight = Some((0..18).map(|j| 1.0 + f64::from(j)).collect());

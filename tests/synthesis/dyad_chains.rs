@@ -204,7 +204,7 @@ fn the_figures_of_answers_are_those_of_an_independent_simulation() {
             assert!(2 * accepted >= found.answers.len(), "{name}: {accepted}");
         }
     }
-    assert!(checked >= cases(30, 200), "{checked}");
+    assert!(checked >= cases(33, 200), "{checked}");
 }
 
 #[test]

@@ -141,7 +141,7 @@ fn paths_hold_lines_and_points_too() {
     }
 }
 
-/// A problem of three poses with these requirements.
+/// Returns a problem of three poses with these requirements.
 fn three_poses(require: &str) -> ProblemSpec {
     let poses = [(0.0, 0.0, 0.0), (20.0, 10.0, 0.3), (40.0, 12.0, 0.6)];
     let poses = poses.map(|(x, y, angle)| (Complex::new(x, y), angle));

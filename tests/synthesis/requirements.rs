@@ -1,6 +1,6 @@
 //! What is required is held by the search, and what the search calls accepted the referee accepts.
 
-use crate::common::{bytes, parse, run_on};
+use crate::common::{bytes, parse, run_on, thorough};
 use linkwright::internals::files::problem_file::load_any;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::record::{Figure, Record};
@@ -37,7 +37,9 @@ fn requirement(record: &Record, name: &str) -> Figure {
 
 #[test]
 fn each_requirement_is_met_where_it_binds() {
-    let free = accepted_and_true(&egg("[require]\ntype = [\"crank-rocker\"]\n[solve]\ncandidates = 1\n"));
+    let solve = format!("[solve]\ncandidates = {}\n", thorough::cases(1, 3));
+    let asked = |line: &str| egg(&format!("[require]\ntype = [\"crank-rocker\"]\n{line}\n{solve}"));
+    let free = accepted_and_true(&asked(""));
     let cases = [
         "transmission_deg_min = 45",
         "link_ratio_max = 2.5",
@@ -46,9 +48,7 @@ fn each_requirement_is_met_where_it_binds() {
         "direction = \"cw\"",
     ];
     for line in cases {
-        let record = accepted_and_true(&egg(&format!(
-            "[require]\ntype = [\"crank-rocker\"]\n{line}\n[solve]\ncandidates = 1\n"
-        )));
+        let record = accepted_and_true(&asked(line));
         // A requirement can only cost.
         assert!(
             record.candidates[0].error.sum_sq >= free.candidates[0].error.sum_sq * (1.0 - 1e-6),

@@ -73,8 +73,8 @@ fn a_six_bar_draws_the_heart_within_its_limits_and_its_record_verifies() {
 
 #[test]
 fn the_bytes_do_not_depend_on_the_number_of_threads() {
-    let text =
-        heart(SIX_BAR, "transmission_deg_min = 25", "").replace("evaluations = 40000", "evaluations = 15000");
+    let evaluations = format!("evaluations = {}", cases(15_000, 40_000));
+    let text = heart(SIX_BAR, "transmission_deg_min = 25", "").replace("evaluations = 40000", &evaluations);
     let of = |threads| bytes(&run_on(threads, parse(&text)));
     assert_eq!(of(1), of(3));
 }

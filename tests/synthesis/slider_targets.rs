@@ -36,7 +36,7 @@ fn deviations(candidate: &Candidate, points: &[[f64; 2]]) -> Vec<f64> {
 const ARC: [[f64; 2]; 7] =
     [[0.0, 0.0], [20.0, 14.0], [40.0, 21.0], [60.0, 25.0], [80.0, 21.0], [100.0, 12.0], [120.0, 0.0]];
 
-/// The kinds that a test looks at: one of them every day, all with `THOROUGH=1`.
+/// Returns the kinds that a test looks at: one of them every day, all with `THOROUGH=1`.
 fn kinds(of_every_day: usize) -> &'static [&'static str] {
     cases(&KINDS[of_every_day..=of_every_day], &KINDS[..])
 }

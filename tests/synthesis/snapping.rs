@@ -1,6 +1,5 @@
 //! Lengths snapped to a stock: exact, judged under the problem as it was, and no worse than trying everything.
 
-use crate::common::thorough::cases;
 use crate::common::{bytes, literature, run_on};
 use linkwright::internals::judge::rank::compare;
 use linkwright::internals::judge::verify::verify;
@@ -290,7 +289,7 @@ fn several_loops() -> [CrankLinkage; 2] {
 #[test]
 fn lengths_of_six_bars_and_eight_bars_are_snapped_too() {
     let (step, mut at_once) = (5.0, 0);
-    for linkage in several_loops().into_iter().take(cases(1, 2)) {
+    for linkage in several_loops() {
         let (problem, before) = own_curve(&linkage).expect("it closes");
         assert!(before.accepted && before.error.rms < 1e-10, "{:?}", before.requirements);
         // Of the eight-bar the links that the third dyad adds.
@@ -314,7 +313,7 @@ fn lengths_of_six_bars_and_eight_bars_are_snapped_too() {
         let told = record(&problem, "snapped", None, None, &request, &found).expect("a record");
         assert_eq!(verify(&told).expect("a problem"), []);
     }
-    assert!(at_once >= cases(0, 1), "none was rounded at once");
+    assert!(at_once > 0, "none was rounded at once");
 }
 
 #[test]

@@ -16,7 +16,7 @@ mod session;
 
 use crate::common::root;
 use crate::common::thorough::is_thorough;
-use session::{Block, blocks, matches, mended, of_console, of_sh, shape};
+use session::{Block, Step, blocks, matches, mended, of_console, of_sh, shape};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -60,7 +60,7 @@ fn writing() -> bool {
 /// runs in the README alone, and with `THOROUGH=1` in every page.
 const IN_THE_README: &str = "linkwright synth problems/shapes/heart.toml --set 'design.mechanism=[";
 
-/// What the README shows of a command that begins with [`IN_THE_README`].
+/// Returns the lines that the README shows below the command that begins with [`IN_THE_README`].
 fn shown_in_the_readme() -> Vec<String> {
     let text = fs::read_to_string(root().join("README.md")).expect("it can be read");
     let page: Vec<String> = text.lines().map(str::to_owned).collect();
@@ -69,6 +69,13 @@ fn shown_in_the_readme() -> Vec<String> {
     let step = blocks(&page).iter().filter(|block| block.info == "console").find_map(of);
     let shown = step.and_then(|step| step.shown).expect("the README shows it");
     shown.into_iter().map(|(_, text)| text).collect()
+}
+
+/// Returns whether a command of another page is not run, because the README shows the same of it and runs it.
+fn is_left_to_the_readme(step: &Step) -> bool {
+    let is_asked = !is_thorough() && !writing() && step.command.starts_with(IN_THE_README);
+    let shown = step.shown.iter().flatten().map(|(_, text)| text);
+    is_asked && shown.eq(&shown_in_the_readme())
 }
 
 struct Answer {
@@ -148,14 +155,7 @@ fn faults(place: &Path) -> Vec<String> {
             if OF_THE_BUILD.iter().any(|build| step.command.starts_with(build)) {
                 continue;
             }
-            let is_here = |shown: &Vec<(usize, String)>| {
-                shown
-                    .iter()
-                    .map(|(_, text)| text.as_str())
-                    .eq(shown_in_the_readme().iter().map(String::as_str))
-            };
-            let elsewhere = name != "README.md" && step.command.starts_with(IN_THE_README);
-            if elsewhere && !is_thorough() && !writing() && step.shown.as_ref().is_some_and(is_here) {
+            if name != "README.md" && is_left_to_the_readme(&step) {
                 continue;
             }
             let answer = answer(folder.path(), &step.command);

@@ -268,6 +268,7 @@ mod tests {
     use super::*;
     use crate::mechanism::Circuit;
     use crate::numbers::arithmetic::streams::{stream, uniform};
+    use crate::thorough::cases;
 
     /// Returns linkages of each type, and one near a change point.
     fn linkages() -> Vec<FourBar> {
@@ -295,7 +296,7 @@ mod tests {
     fn interpolation_finds_what_golden_section_finds() {
         let draws = &mut stream(7, 0);
         let (mut interpolated, mut tried) = (0, 0);
-        let places = if std::env::var_os("THOROUGH").is_some() { 400 } else { 100 };
+        let places = cases(100, 400);
         for linkage in linkages() {
             let angle = linkage.mobility().arc(Circuit { index: 0 }).map_or(0.3, |arc| arc.middle);
             let curve = CouplerCurve::through(&linkage, angle, AssemblyMode::Plus, DEFAULT_SAMPLES);
