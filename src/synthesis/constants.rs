@@ -255,13 +255,13 @@ pub mod variable_projection {
     pub const CONSTRAINED_SHORT: usize = 6;
     pub const CONSTRAINED_LONG: usize = 2;
     /// Least number of waves with such fits, if requirements are active.
-    pub const BINDING_WAVES: u64 = 2;
+    pub const BINDING_WAVES: u64 = 4;
     /// Batches that run in parallel.
-    pub const WAVE: u64 = 4;
+    pub const WAVE: u64 = 2;
     /// Least number of waves if several answers are wanted, and waves without a new answer that end the search for
     /// more.
-    pub const LEAST_WAVES: u64 = 6;
-    pub const QUIET_WAVES: u64 = 12;
+    pub const LEAST_WAVES: u64 = 12;
+    pub const QUIET_WAVES: u64 = 24;
     /// Number of candidates kept while searching.
     pub const KEPT: usize = 400;
 }
@@ -297,7 +297,7 @@ pub mod free {
     /// The part of the evaluations of a round that is cut short, one in so many, that its ends are finished with.
     pub const FINISHING: u64 = 4;
     /// Least number of batches for a sparse target.
-    pub const LEAST_BATCHES: u64 = 3;
+    pub const LEAST_BATCHES: u64 = 2;
     /// Batches in which a round on a dense target fits only its best start further.
     pub const DENSE_BATCHES: u64 = 4;
     /// Least number of batches for a dense target whose errors are small and not noise.
@@ -360,8 +360,13 @@ pub mod free {
     pub const KEPT: usize = 400;
     /// Number of points below which a target is not matched with the atlas.
     pub const LEAST_MATCHED: usize = 24;
+    /// Of so many rounds the last starts near known ends, on a sparse and on a dense target. Chosen for sparse targets by the
+    /// errors of random ones of 10 to 45 points, as the number of starts drawn.
+    pub const HOP_EVERY: u64 = 4;
+    pub const DENSE_HOP_EVERY: u64 = 2;
     /// Starts drawn and screened in a round.
-    pub const SCREEN: usize = 160;
+    pub const SCREEN: usize = 64;
+    pub const DENSE_SCREEN: usize = 160;
     /// Matches of the atlas taken in a round.
     pub const MATCHED: usize = 48;
     /// Starts near a known end taken in a round.

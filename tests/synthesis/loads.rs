@@ -80,6 +80,7 @@ fn a_torque_that_no_linkage_keeps_is_a_conflict_with_a_way_out() {
         2,
         stride(&[
             ("solve.candidates", "1"),
+            ("solve.seed", "2"),
             ("solve.evaluations", "10000"),
             ("require.peak_torque_max", "0.35"),
         ]),

@@ -12,9 +12,10 @@ use crate::synthesis::atlas::Matches;
 use crate::synthesis::belief::SAME_OPTIMUM;
 use crate::synthesis::coarse::Coarse;
 use crate::synthesis::constants::free::{
-    ALIKE_ENDS, BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, DENSE_WORTH_DIGITS, DENSE_WORTH_FINISHING,
-    FINISHED_IN_NOISE, IN_NOISE, JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED, SCREEN,
-    SEVERAL_WORTH_FINISHING, SHAPE_MIDDLE, SHORT, SHORT_FIT, WORTH_DIGITS, WORTH_FINISHING,
+    ALIKE_ENDS, BATCH, DENSE_BATCHES, DENSE_HOP_EVERY, DENSE_MIDDLE, DENSE_SCREEN, DENSE_SHORT,
+    DENSE_WORTH_DIGITS, DENSE_WORTH_FINISHING, FINISHED_IN_NOISE, HOP_EVERY, IN_NOISE, JITTERED, MATCHED,
+    MIDDLE, MIDDLE_FIT, REASSIGNED, SCREEN, SEVERAL_WORTH_FINISHING, SHAPE_MIDDLE, SHORT, SHORT_FIT,
+    WORTH_DIGITS, WORTH_FINISHING,
 };
 use crate::synthesis::moves::{along_a_difference, near};
 use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
@@ -50,6 +51,16 @@ impl Setup<'_> {
     /// Returns whether the target is dense.
     pub(super) fn is_dense(&self) -> bool {
         Coarse::is_for(self.problem)
+    }
+
+    /// Returns the number of rounds of which the last starts near known ends.
+    fn hop_every(&self) -> u64 {
+        if self.is_dense() { DENSE_HOP_EVERY } else { HOP_EVERY }
+    }
+
+    /// Returns whether a round of a stage starts near known ends, if there are any.
+    fn hops(&self, round: u64) -> bool {
+        round % self.hop_every() == self.hop_every() - 1
     }
 
     /// Returns whether an end with this merit on the explored points can still matter beside the best one there.
@@ -111,7 +122,7 @@ impl Common<'_> {
 
     /// Returns whether a round of the batch is independent: it uses no results of others.
     fn is_independent(&self, round: u64) -> bool {
-        self.near_ends.is_empty() || (self.first_of_stage + round).is_multiple_of(2)
+        self.near_ends.is_empty() || !self.setup.hops(self.first_of_stage + round)
     }
 }
 
@@ -178,7 +189,7 @@ fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f6
     let Common { setup, near_ends, first_of_stage, .. } = common;
     let index = first_of_stage + round;
     let explored = setup.explored();
-    let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
+    let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(DENSE_SCREEN);
     let mut count = 0;
     let mut take = |spender: &mut Spender<'_>, start: Option<Start>| {
         count += 1;
@@ -187,12 +198,12 @@ fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f6
         drawn.extend(promise(explored, &mut start).map(|promise| (promise, start)));
     };
     // An exploration draws the same whatever else is explored: a stricter one as a search of the stricter problem would.
-    let turn = index as usize / 2;
+    let turn = (index - index / setup.hop_every()) as usize;
     // Of three independent rounds two take matches, as long as there are any.
     let first = (turn - turn / 3) * MATCHED;
     let mut draws = stream(setup.problem.spec().solve.seed, setup.first_stream + index);
     if !common.is_independent(round) {
-        let end = &near_ends[(index / 2) as usize % near_ends.len()];
+        let end = &near_ends[(index / setup.hop_every()) as usize % near_ends.len()];
         for i in 0..JITTERED {
             if spender.left() == 0 {
                 break;
@@ -210,7 +221,7 @@ fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f6
             take(spender, start);
         }
     } else {
-        let matched = index.is_multiple_of(2) && turn % 3 < 2;
+        let matched = !setup.hops(index) && turn % 3 < 2;
         match setup.matches.as_ref().filter(|matches| matched && first < matches.len()) {
             Some(matches) => {
                 for rank in first..(first + MATCHED).min(matches.len()) {
@@ -220,7 +231,7 @@ fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f6
                 }
             }
             None => {
-                for _ in 0..SCREEN {
+                for _ in 0..if setup.is_dense() { DENSE_SCREEN } else { SCREEN } {
                     if spender.left() > 0 {
                         take(spender, setup.starts.draw(&mut draws));
                     }
