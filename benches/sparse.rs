@@ -12,7 +12,7 @@
 //! Every second target is closed: z = sum of c_k e^(ikt) for k = 1, -1, 2, -2, 3 at uneven t. The others are open: sums of
 //! three cosines and sines. A third of each has no noise, a third 0.3 %, a third 2 % of about half its size. In turn nothing is
 //! asked, or a crank that turns fully, or a transmission angle of 30 degrees, or a crank-rocker of links up to 6. Without
-//! a file the reference is the best error of the run's own seeds: compare two programs with one file, each of them run twice.
+//! a file the reference is the best error of the run's own seeds: compare two programs with one file, each run twice.
 
 #![expect(clippy::print_stdout, reason = "the table is what this program is for")]
 
@@ -112,7 +112,6 @@ struct Outcome {
     sum_sq: f64,
     believed: bool,
     evaluations: u64,
-    search_s: f64,
 }
 
 fn searched(file: &Path, seed: u64) -> Outcome {
@@ -124,14 +123,12 @@ fn searched(file: &Path, seed: u64) -> Outcome {
     let set = set.map(|(key, value): (&str, String)| (key.to_owned(), value));
     let job = Job::from(load_any(file, &set).unwrap_or_else(|why| panic!("{why}")));
     let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
-    let finished = run(&job, &context).expect("it runs");
-    let record = finished.record;
+    let record = run(&job, &context).expect("it runs").record;
     let best = record.candidates.first().filter(|candidate| candidate.accepted);
     Outcome {
         sum_sq: best.map_or(f64::INFINITY, |best| best.error.sum_sq),
         believed: matches!(record.termination.reason, Reason::Converged | Reason::TargetReached),
         evaluations: record.evaluations.objective,
-        search_s: finished.search_s,
     }
 }
 
@@ -146,9 +143,9 @@ fn main() {
         _ => BTreeMap::new(),
     };
     println!(
-        "| points | searches | within 1 % | within 5 % | mean of ln(sum / best) | believed | believed, worse by over 1 % | evaluations, million | median | search s |"
+        "| points | searches | within 1 % | within 5 % | mean of ln(sum / best) | believed | believed, worse by over 1 % | evaluations, million | median |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|");
     for group in GROUPS.iter().filter(|group| arguments.from.is_none_or(|from| from == *group.start())) {
         let names: Vec<String> = (0..arguments.targets).map(|i| format!("{}-{i}", group.start())).collect();
         let files: Vec<PathBuf> = (0..)
@@ -182,7 +179,7 @@ fn main() {
         let mut evaluations: Vec<u64> = outcomes.iter().map(|outcome| outcome.evaluations).collect();
         evaluations.sort_unstable();
         println!(
-            "| {} to {} | {} | {} | {} | {:.4} | {believed} | {} | {:.2} | {} | {:.1} |",
+            "| {} to {} | {} | {} | {} | {:.4} | {believed} | {} | {:.2} | {} |",
             group.start(),
             group.end(),
             jobs.len(),
@@ -192,7 +189,6 @@ fn main() {
             wrongly.count(),
             evaluations.iter().sum::<u64>() as f64 / 1e6,
             evaluations[evaluations.len() / 2],
-            outcomes.iter().map(|outcome| outcome.search_s).sum::<f64>(),
         );
     }
     if let Some(file) = &arguments.reference {

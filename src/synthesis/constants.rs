@@ -360,8 +360,8 @@ pub mod free {
     pub const KEPT: usize = 400;
     /// Number of points below which a target is not matched with the atlas.
     pub const LEAST_MATCHED: usize = 24;
-    /// Of so many rounds the last starts near known ends, on a sparse and on a dense target. Chosen for sparse targets by the
-    /// errors of random ones of 10 to 45 points, as the number of starts drawn.
+    /// Of so many rounds the last starts near known ends, on a sparse and on a dense target. Chosen for sparse targets, as
+    /// the number of starts drawn, by the time of L10 and P12; `benches/sparse` tells what it does to errors.
     pub const HOP_EVERY: u64 = 4;
     pub const DENSE_HOP_EVERY: u64 = 2;
     /// Starts drawn and screened in a round.

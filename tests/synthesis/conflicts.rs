@@ -291,7 +291,7 @@ fn a_guide_that_is_possible_is_found_and_named_no_conflict() {
 fn more_evaluations_never_make_a_guide_worse() {
     let mut least = f64::INFINITY;
     for evaluations in [1000, 2000, 4000, 8000].into_iter().take(cases(3, 4)) {
-        let record = run_on(2, guide(200.0, 4, evaluations, &[]));
+        let record = run_on(2, guide(200.0, 5, evaluations, &[]));
         let best = record.candidates.first().filter(|c| c.accepted);
         let rms = best.map_or(f64::INFINITY, |c| c.error.rms);
         assert!(rms <= 1.001 * least || least == f64::INFINITY, "{evaluations}: {rms} after {least}");
