@@ -33,7 +33,7 @@ use std::sync::atomic::AtomicBool;
 
 /// The numbers of points of the targets of a group.
 const GROUPS: [RangeInclusive<usize>; 3] = [10..=15, 16..=23, 24..=45];
-/// What targets ask for, in turn.
+/// Lists the requirements that targets ask for, in turn.
 const ASKED: [&str; 4] = [
     "",
     "[require]\ntype = [\"crank-rocker\", \"double-crank\"]\n",

@@ -53,6 +53,11 @@ impl Setup<'_> {
         Coarse::is_for(self.problem)
     }
 
+    /// Returns the number of starts that a round draws and screens.
+    fn screen(&self) -> usize {
+        if self.is_dense() { DENSE_SCREEN } else { SCREEN }
+    }
+
     /// Returns the number of rounds of which the last starts near known ends.
     fn hop_every(&self) -> u64 {
         if self.is_dense() { DENSE_HOP_EVERY } else { HOP_EVERY }
@@ -189,7 +194,7 @@ fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f6
     let Common { setup, near_ends, first_of_stage, .. } = common;
     let index = first_of_stage + round;
     let explored = setup.explored();
-    let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(DENSE_SCREEN);
+    let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(setup.screen());
     let mut count = 0;
     let mut take = |spender: &mut Spender<'_>, start: Option<Start>| {
         count += 1;
@@ -231,7 +236,7 @@ fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f6
                 }
             }
             None => {
-                for _ in 0..if setup.is_dense() { DENSE_SCREEN } else { SCREEN } {
+                for _ in 0..setup.screen() {
                     if spender.left() > 0 {
                         take(spender, setup.starts.draw(&mut draws));
                     }
