@@ -3,7 +3,9 @@
 //!
 //! A demand *helps* if a search without it ends with something acceptable. Every set of demands that cannot be met
 //! together (a conflict) contains all that help. A minimal conflict is found by deletion: each demand that can be left
-//! out without ending the conflict is left out, one after the other. For each demand that helps the smallest loosening
+//! out without ending the conflict is left out, one after the other. Before it is named, its demands alone are searched
+//! with as many evaluations as several trials have: what that finds refutes it and counts in the trials before, and the
+//! next claim is made with it. Demands of the conflict that did not help are tried again at that length. For each demand that helps the smallest loosening
 //! is looked for between its limits and the values attained without it: steps inward, each taken if a fit from known
 //! candidates, or else a short search, ends acceptable there. The limits are then rounded outward to few digits, and
 //! proposed only if the search itself, run with them as it would be when they are typed, ends with an accepted
@@ -15,8 +17,8 @@
 //! The results are findings, not proofs: a search that finds nothing does not prove that there is nothing to find.
 
 use super::constants::conflicts::{
-    ALLOWANCE, FIT_SHARE, LED_IN, LONGER, PROPOSALS, SEARCHED_STEP, SHORTER, SHORTEST_STEP, STEPS, TRIAL,
-    TRIAL_SHARE, WARM,
+    ALLOWANCE, CLAIMS, CONFIRMING, FIT_SHARE, LED_IN, LONGER, PROPOSALS, SEARCHED_STEP, SHORTER,
+    SHORTEST_STEP, STEPS, TRIAL, TRIAL_SHARE, WARM,
 };
 use super::multistart::{LONG_FIT, judged, polish};
 use super::relaxed::led_in;
@@ -29,6 +31,7 @@ use crate::record::{Candidate, Conflict, RELAXED, Relaxation};
 use crate::task::Problem;
 use crate::task::requirement::Limit;
 use crate::task::spec::{Method, ProblemSpec};
+use std::mem;
 
 /// Distance from a bound, in parts of its scale, within which the bound is active.
 const ACTIVE: f64 = 1e-6;
@@ -64,9 +67,9 @@ pub fn explain(context: Context<'_>, outcome: &mut SearchOutcome) -> Result<Expl
         return Ok(Explained::default());
     }
     let trial = (problem.spec().solve.evaluations / TRIAL_SHARE).clamp(1, TRIAL);
-    let (allowance, refused) = (ALLOWANCE * trial, outcome.candidates.clone());
+    let (allowance, known) = (ALLOWANCE * trial, outcome.candidates.clone());
     let (met, tried) = (Vec::new(), Vec::new());
-    let mut inquiry = Inquiry { context, problem, trial, spent: 0, allowance, refused, met, tried };
+    let mut inquiry = Inquiry { context, problem, trial, spent: 0, allowance, known, met, tried };
     let explained = inquiry.explain()?;
     let Inquiry { met, .. } = inquiry;
     if let Some(reason) = context.stop_reason() {
@@ -95,8 +98,8 @@ struct Inquiry<'a> {
     trial: u64,
     spent: u64,
     allowance: u64,
-    /// The candidates of the search that is explained.
-    refused: Vec<Candidate>,
+    /// The candidates of the search that is explained, and those that refuted a claim.
+    known: Vec<Candidate>,
     /// Designs that are acceptable after all.
     met: Vec<Candidate>,
     /// Acceptable candidates found without these demands, for each set tried.
@@ -110,17 +113,33 @@ impl Inquiry<'_> {
 
     fn explain(&mut self) -> Result<Explained, PopulationError> {
         let demands = self.demands();
-        let mut helping = Vec::new();
-        for &demand in &demands {
-            if !self.without(&[demand])?.is_empty() {
+        let (mut helping, mut found, mut among) = (Vec::new(), Vec::new(), Vec::new());
+        for _ in 0..CLAIMS {
+            let before = helping.len();
+            for &demand in &demands {
+                if !helping.contains(&demand) && !self.without(&[demand])?.is_empty() {
+                    helping.push(demand);
+                }
+            }
+            for &demand in &helping[before..] {
+                found.extend(self.relaxation(&[demand])?);
+            }
+            among = self.conflict(&demands, &helping)?;
+            if among.is_empty() || !self.is_refuted(&demands, &among)? {
+                break;
+            }
+            among.clear();
+        }
+        // A limit of the conflict that does not help by itself may only have been tried too briefly. The search that is
+        // explained has looked for the least error already.
+        let brief: Vec<Demand> =
+            among.iter().copied().filter(|d| !helping.contains(d) && *d != Demand::TOLERANCE).collect();
+        for demand in brief.into_iter().take(CLAIMS) {
+            if !self.exhausted() && self.search_longer(&[demand])? {
                 helping.push(demand);
+                found.extend(self.relaxation(&[demand])?);
             }
         }
-        let mut found = Vec::new();
-        for &demand in &helping {
-            found.extend(self.relaxation(&[demand])?);
-        }
-        let among = self.conflict(&demands, &helping)?;
         if helping.is_empty() {
             for (i, &one) in among.iter().enumerate() {
                 for &other in demands.iter().filter(|other| !among[..=i].contains(other)) {
@@ -154,8 +173,8 @@ impl Inquiry<'_> {
         };
         let keep = |demand: &Demand| {
             !matches!(demand, Demand::Design(_))
-                || self.refused.is_empty()
-                || self.refused.iter().any(|candidate| is_active(demand, candidate))
+                || self.known.is_empty()
+                || self.known.iter().any(|candidate| is_active(demand, candidate))
         };
         Demand::of(self.problem).into_iter().filter(keep).collect()
     }
@@ -168,10 +187,9 @@ impl Inquiry<'_> {
         if self.exhausted() {
             return Ok(Vec::new());
         }
-        let all = demands.iter();
-        let mut spec = all.fold(self.problem.spec().clone(), |spec, d| d.dropped(self.problem, spec));
+        let mut spec = self.dropped(demands);
         spec.solve.candidates = WARM;
-        let mut found = self.known_under(&spec);
+        let mut found = self.acceptable_under(&spec, &self.known);
         // A tolerance does not guide a fit: the search that is explained has already looked for the nearest to it.
         if found.is_empty() || demands != [Demand::TOLERANCE] {
             found.extend(self.short_search(spec, self.trial, WARM)?);
@@ -180,10 +198,16 @@ impl Inquiry<'_> {
         Ok(found)
     }
 
-    /// Returns the refused candidates that are acceptable under a looser specification.
-    fn known_under(&self, spec: &ProblemSpec) -> Vec<Candidate> {
+    /// Returns the problem without some demands.
+    fn dropped(&self, demands: &[Demand]) -> ProblemSpec {
+        demands.iter().fold(self.problem.spec().clone(), |spec, demand| demand.dropped(self.problem, spec))
+    }
+
+    /// Returns the candidates that are acceptable under a looser specification.
+    fn acceptable_under(&self, spec: &ProblemSpec, candidates: &[Candidate]) -> Vec<Candidate> {
         let Ok(problem) = Problem::new(spec.clone()) else { return Vec::new() };
-        let judged = self.refused.iter().filter_map(|c| judged_under(&problem, c));
+        let asked = candidates.iter().take_while(|_| !self.context.stopped());
+        let judged = asked.filter_map(|c| judged_under(&problem, c));
         judged.filter(|c| c.accepted).take(WARM).collect()
     }
 
@@ -233,7 +257,7 @@ impl Inquiry<'_> {
                 return Ok(Vec::new());
             }
             if !self.exhausted() {
-                return Ok(helping.to_vec());
+                return Ok(demands.iter().copied().filter(|d| helping.contains(d)).collect());
             }
         }
         let mut left_out: Vec<Demand> = Vec::new();
@@ -249,6 +273,35 @@ impl Inquiry<'_> {
             return Ok(Vec::new());
         }
         Ok(demands.iter().copied().filter(|d| !left_out.contains(d)).collect())
+    }
+
+    /// Searches the problem with the demands `among` alone, which are said not to be met together, and returns whether
+    /// it finds that they are.
+    fn is_refuted(&mut self, demands: &[Demand], among: &[Demand]) -> Result<bool, PopulationError> {
+        let others: Vec<Demand> = demands.iter().copied().filter(|d| !among.contains(d)).collect();
+        // All demands together are what the search that is explained has looked for.
+        if others.is_empty() { Ok(false) } else { self.search_longer(&others) }
+    }
+
+    /// Searches the problem without some demands with as many evaluations as several trials have, and returns whether it
+    /// finds something acceptable. What it finds becomes known, and counts in every trial that found nothing.
+    fn search_longer(&mut self, without: &[Demand]) -> Result<bool, PopulationError> {
+        if self.context.stopped() || !self.met.is_empty() {
+            return Ok(false);
+        }
+        let mut spec = self.dropped(without);
+        spec.solve.candidates = 1;
+        let evaluations = CONFIRMING * self.trial;
+        self.allowance += evaluations;
+        let found = self.short_search(spec, evaluations, WARM)?;
+        let mut tried = mem::take(&mut self.tried);
+        for (without, known) in tried.iter_mut().filter(|(_, known)| known.is_empty()) {
+            *known = self.acceptable_under(&self.dropped(without), &found);
+        }
+        self.tried = tried;
+        let is_found = !found.is_empty();
+        self.known.extend(found);
+        Ok(is_found)
     }
 
     /// Returns the least loosening of some demands together, with its distance.

@@ -360,13 +360,14 @@ pub mod free {
     pub const KEPT: usize = 400;
     /// Number of points below which a target is not matched with the atlas.
     pub const LEAST_MATCHED: usize = 24;
-    /// Of so many rounds the last starts near known ends, on a sparse and on a dense target. Chosen for sparse targets, as
-    /// the number of starts drawn, by the time of L10 and P12; `benches/sparse` tells what it does to errors.
-    pub const HOP_EVERY: u64 = 4;
-    pub const DENSE_HOP_EVERY: u64 = 2;
+    /// Of so many rounds the last starts near known ends, and on a target of fewer than `STRICT_LEAST` points, where it was
+    /// chosen, as the number of starts drawn, by the time of L10 and P12. `benches/sparse` tells what it does to errors:
+    /// with more points it is paid for with wrong beliefs.
+    pub const HOP_EVERY: u64 = 2;
+    pub const FEW_HOP_EVERY: u64 = 4;
     /// Starts drawn and screened in a round.
-    pub const SCREEN: usize = 64;
-    pub const DENSE_SCREEN: usize = 160;
+    pub const SCREEN: usize = 160;
+    pub const FEW_SCREEN: usize = 64;
     /// Matches of the atlas taken in a round.
     pub const MATCHED: usize = 48;
     /// Starts near a known end taken in a round.
@@ -618,6 +619,12 @@ pub mod conflicts {
     /// Factor of the next step after one that succeeded, and after one that did not.
     pub const LONGER: f64 = 1.5;
     pub const SHORTER: f64 = 0.5;
+    /// Evaluations of a search that confirms or refutes what trials found, in trials: at most those of the search that is
+    /// explained.
+    pub const CONFIRMING: u64 = TRIAL_SHARE;
+    /// Most conflicts that are put to that search (if each is refuted, none is named), and most demands that are tried at
+    /// that length.
+    pub const CLAIMS: usize = 3;
     /// Most proposals.
     pub const PROPOSALS: usize = 5;
 }

@@ -74,25 +74,26 @@ fn a_binding_torque_is_used_up_to_its_limit_and_costs() {
     assert!(named("peak_torque_max"));
 }
 
+/// Short trials miss the linkage that keeps all but the torque (seeds 1 and 3): they are not believed.
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn a_torque_that_no_linkage_keeps_is_a_conflict_with_a_way_out() {
-    let record = run_on(
-        2,
-        stride(&[
-            ("solve.candidates", "1"),
-            ("solve.seed", "2"),
-            ("solve.evaluations", "10000"),
-            ("require.peak_torque_max", "0.35"),
-        ]),
-    );
-    assert!(record.candidates.iter().all(|c| !c.accepted));
-    let named = record.relaxations.iter().flat_map(|r| &r.set);
-    assert!(
-        named.into_iter().any(|change| change.key == "require.peak_torque_max"),
-        "{:?} {:?}",
-        record.conflict,
-        record.relaxations
-    );
+    for seed in ["1", "2", "3"] {
+        let record = run_on(
+            2,
+            stride(&[
+                ("solve.candidates", "1"),
+                ("solve.seed", seed),
+                ("solve.evaluations", "10000"),
+                ("require.peak_torque_max", "0.35"),
+            ]),
+        );
+        assert!(record.candidates.iter().all(|c| !c.accepted));
+        let among = &record.conflict.as_ref().expect("a conflict").among;
+        assert_eq!(among[..], ["require.peak_torque_max", "task.path.tolerance"], "{seed}");
+        let mut helping = record.relaxations.iter().flat_map(|r| &r.set);
+        assert!(helping.any(|set| set.key == "require.peak_torque_max"), "{seed}: {:?}", record.relaxations);
+    }
 }
 
 fn front(spec: ProblemSpec, axes: &[Axis]) -> Record {

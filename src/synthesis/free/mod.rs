@@ -3,10 +3,10 @@
 //!
 //! A *round* takes `SCREEN` drawn starts, or matches of the atlas if the target has points enough; the last of every
 //! `HOP_EVERY` rounds takes starts near known ends and along the differences between them. It fits the `SHORT` most
-//! promising for a few steps, fits the best `MIDDLE` of those further, and finishes those that can still matter. On a dense
-//! target more starts are drawn, and every second round begins near known ends; such starts are fitted whatever they
-//! promise, since the most promising lead back to their end; and if errors are not noise the last of the fits that go
-//! further is not the next best, but one of the others in turn.
+//! promising for a few steps, fits the best `MIDDLE` of those further, and finishes those that can still matter. Targets of
+//! few points have fewer starts drawn (`FEW_SCREEN`) and fewer rounds near known ends (`FEW_HOP_EVERY`). On a dense
+//! target starts near known ends are fitted whatever they promise, since the most promising lead back to their end; and if
+//! errors are not noise the last of the fits that go further is not the next best, but one of the others in turn.
 //!
 //! Dense targets are explored in groups of points ([`super::coarse`]); now and then all points are explored, or one point
 //! of each group, to find detail that the groups' means blur. The correspondence between the points and the curve is

@@ -12,10 +12,10 @@ use crate::synthesis::atlas::Matches;
 use crate::synthesis::belief::SAME_OPTIMUM;
 use crate::synthesis::coarse::Coarse;
 use crate::synthesis::constants::free::{
-    ALIKE_ENDS, BATCH, DENSE_BATCHES, DENSE_HOP_EVERY, DENSE_MIDDLE, DENSE_SCREEN, DENSE_SHORT,
-    DENSE_WORTH_DIGITS, DENSE_WORTH_FINISHING, FINISHED_IN_NOISE, HOP_EVERY, IN_NOISE, JITTERED, MATCHED,
-    MIDDLE, MIDDLE_FIT, REASSIGNED, SCREEN, SEVERAL_WORTH_FINISHING, SHAPE_MIDDLE, SHORT, SHORT_FIT,
-    WORTH_DIGITS, WORTH_FINISHING,
+    ALIKE_ENDS, BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, DENSE_WORTH_DIGITS, DENSE_WORTH_FINISHING,
+    FEW_HOP_EVERY, FEW_SCREEN, FINISHED_IN_NOISE, HOP_EVERY, IN_NOISE, JITTERED, MATCHED, MIDDLE, MIDDLE_FIT,
+    REASSIGNED, SCREEN, SEVERAL_WORTH_FINISHING, SHAPE_MIDDLE, SHORT, SHORT_FIT, WORTH_DIGITS,
+    WORTH_FINISHING,
 };
 use crate::synthesis::moves::{along_a_difference, near};
 use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
@@ -55,12 +55,12 @@ impl Setup<'_> {
 
     /// Returns the number of starts that a round draws and screens.
     fn screen(&self) -> usize {
-        if self.is_dense() { DENSE_SCREEN } else { SCREEN }
+        if has_many_points(self.problem) { SCREEN } else { FEW_SCREEN }
     }
 
     /// Returns the number of rounds of which the last starts near known ends.
     fn hop_every(&self) -> u64 {
-        if self.is_dense() { DENSE_HOP_EVERY } else { HOP_EVERY }
+        if has_many_points(self.problem) { HOP_EVERY } else { FEW_HOP_EVERY }
     }
 
     /// Returns whether a round of a stage starts near known ends, if there are any.
