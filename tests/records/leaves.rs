@@ -86,7 +86,7 @@ fn records() -> Vec<(&'static str, Record)> {
     let kinds = [
         ("design.mechanism", r#"["four-bar", "six-bar"]"#),
         ("task.path.tolerance", "0.14"),
-        ("solve.evaluations", "60000"),
+        ("solve.evaluations", "30000"),
         ("solve.candidates", "1"),
     ];
     let of_kinds = shipped("shapes/heart", &kinds);

@@ -64,7 +64,7 @@ fn impossible() -> Vec<(PathBuf, Set<'static>, &'static str)> {
 }
 
 fn with(path: &std::path::Path, set: &[(&str, &str)]) -> ProblemFile {
-    let evaluations = if is_thorough() { "40000" } else { "12000" };
+    let evaluations = if is_thorough() { "40000" } else { "6000" };
     load(path, &[&[("solve.evaluations", evaluations)], set].concat())
 }
 

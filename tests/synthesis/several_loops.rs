@@ -117,7 +117,7 @@ fn a_further_dyad_is_searched_for_where_the_tolerance_asks_for_it() {
 #[test]
 fn a_six_bar_is_offered_where_no_four_bar_keeps_the_tolerance() {
     let text = heart("", "transmission_deg_min = 20", "tolerance = 0.12");
-    let evaluations = format!("evaluations = {}", cases(12_000, 40_000));
+    let evaluations = format!("evaluations = {}", cases(6_000, 40_000));
     let record = run_on(2, parse(&text.replace("evaluations = 40000", &evaluations)));
     assert!(record.candidates.iter().all(|c| !c.accepted));
     let other = record.pick(Pick::OtherKind).expect("a six-bar");

@@ -286,34 +286,44 @@ fn several_loops() -> [CrankLinkage; 2] {
     [six, eight].map(|linkage| CrankLinkage::MultiLoop(linkage.expect("a linkage")))
 }
 
-#[test]
-fn lengths_of_six_bars_and_eight_bars_are_snapped_too() {
-    let (step, mut at_once) = (5.0, 0);
-    for linkage in several_loops() {
-        let (problem, before) = own_curve(&linkage).expect("it closes");
-        assert!(before.accepted && before.error.rms < 1e-10, "{:?}", before.requirements);
-        // Of the eight-bar the links that the third dyad adds.
-        let all = Length::all(&linkage);
-        let wanted = match linkage.kind() {
-            LinkageKind::SixBar => all.clone(),
-            _ => ["X3F3", "Y3F3", "AY3", "a"].map(|key| Length::named(key).expect("a length")).to_vec(),
-        };
-        assert_eq!(all.len(), if linkage.kind() == LinkageKind::SixBar { 12 } else { 18 });
-        let request = request(step, &wanted);
-        let found = snap(Context::new(&problem, &budget()), &before, &request).expect("an answer");
-        assert_eq!(found.lengths.len(), wanted.len());
-        assert!(found.candidates.iter().all(|c| c.linkage.kind() == linkage.kind()));
-        on_stock(&found, step, 1e-11);
-        let best = &found.candidates[0];
-        assert!(best.accepted && best.error.rms < 0.02 * problem.task().size(), "{}", best.error.rms);
-        if let Some(nearest) = &found.nearest {
-            assert!(compare(&problem, best, nearest).is_le());
-            at_once += 1;
-        }
-        let told = record(&problem, "snapped", None, None, &request, &found).expect("a record");
-        assert_eq!(verify(&told).expect("a problem"), []);
+/// Snaps lengths of a linkage that draws its target exactly; returns whether rounding them at once was an answer too.
+fn is_snapped_to_stock(linkage: CrankLinkage) -> bool {
+    let step = 5.0;
+    let (problem, before) = own_curve(&linkage).expect("it closes");
+    assert!(before.accepted && before.error.rms < 1e-10, "{:?}", before.requirements);
+    // Of the eight-bar the links that the third dyad adds.
+    let all = Length::all(&linkage);
+    let wanted = match linkage.kind() {
+        LinkageKind::SixBar => all.clone(),
+        _ => ["X3F3", "Y3F3", "AY3", "a"].map(|key| Length::named(key).expect("a length")).to_vec(),
+    };
+    assert_eq!(all.len(), if linkage.kind() == LinkageKind::SixBar { 12 } else { 18 });
+    let request = request(step, &wanted);
+    let found = snap(Context::new(&problem, &budget()), &before, &request).expect("an answer");
+    assert_eq!(found.lengths.len(), wanted.len());
+    assert!(found.candidates.iter().all(|c| c.linkage.kind() == linkage.kind()));
+    on_stock(&found, step, 1e-11);
+    let best = &found.candidates[0];
+    assert!(best.accepted && best.error.rms < 0.02 * problem.task().size(), "{}", best.error.rms);
+    if let Some(nearest) = &found.nearest {
+        assert!(compare(&problem, best, nearest).is_le());
     }
-    assert!(at_once > 0, "none was rounded at once");
+    let told = record(&problem, "snapped", None, None, &request, &found).expect("a record");
+    assert_eq!(verify(&told).expect("a problem"), []);
+    found.nearest.is_some()
+}
+
+#[test]
+fn lengths_of_a_six_bar_are_snapped_too() {
+    let [six_bar, _] = several_loops();
+    is_snapped_to_stock(six_bar);
+}
+
+#[test]
+#[ignore = "slow: .ci/run runs it"]
+fn lengths_of_an_eight_bar_are_snapped_too_and_some_are_rounded_at_once() {
+    let snapped = several_loops().map(is_snapped_to_stock);
+    assert!(snapped.contains(&true), "none was rounded at once");
 }
 
 #[test]

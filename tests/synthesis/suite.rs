@@ -394,7 +394,7 @@ fn house(problems: &[(&str, &str)]) -> TempDir {
 
 #[test]
 fn the_command_runs_what_the_filter_names() {
-    let house = house(&[("e5", ""), ("k18", ""), ("k18b", ""), ("k18f", "evaluations = 60000")]);
+    let house = house(&[("e5", ""), ("k18", ""), ("k18b", ""), ("k18f", "evaluations = 30000")]);
     let (code, stdout, stderr) =
         answer(linkwright(house.path()).args(["suite", "k18", "--seeds", "1", "--json"]));
     assert_eq!(code, Some(0), "{stderr}");

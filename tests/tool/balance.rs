@@ -97,7 +97,16 @@ fn what_cannot_be_balanced_is_refused_with_the_remedy() {
 fn a_result_under_loads_has_its_torques_in_table_csv_and_page() {
     let folder = TempDir::new().expect("a folder");
     let problem = root().join("problems/examples/walking-stride-loaded.toml").display().to_string();
-    let few = ["--set", "solve.evaluations=4000", "--set", "solve.candidates=2", "--quiet", "--out", "r"];
+    let few = [
+        "--set",
+        "solve.evaluations=4000",
+        "--set",
+        "solve.candidates=2",
+        "--no-advice",
+        "--quiet",
+        "--out",
+        "r",
+    ];
     let (code, stdout, stderr) = linkwright(folder.path(), &[&["synth", &problem][..], &few[..]].concat());
     assert!(code < 2, "{stderr}");
     assert!(stdout.contains("Peak torque on the crank under the loads, N m"), "{stdout}");

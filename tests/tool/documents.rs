@@ -16,7 +16,7 @@ mod session;
 
 use crate::common::root;
 use crate::common::thorough::is_thorough;
-use session::{Block, Step, blocks, matches, mended, of_console, of_sh, shape};
+use session::{Block, blocks, matches, mended, of_console, of_sh, shape};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -56,26 +56,15 @@ fn writing() -> bool {
     std::env::var_os("LINKWRIGHT_WRITE_DOCS").is_some()
 }
 
-/// The beginning of a command of a quarter of a minute that the README shows too: where another page shows the same of it, it
-/// runs in the README alone, and with `THOROUGH=1` in every page.
-const IN_THE_README: &str = "linkwright synth problems/shapes/heart.toml --set 'design.mechanism=[";
+/// The beginnings of commands of a quarter of a minute and more: they run with `THOROUGH=1`, and when the pages are written.
+const LONG: [&str; 2] = [
+    "linkwright synth problems/shapes/heart.toml --set 'design.mechanism=[",
+    "linkwright synth problems/examples --out results/all",
+];
 
-/// Returns the lines that the README shows below the command that begins with [`IN_THE_README`].
-fn shown_in_the_readme() -> Vec<String> {
-    let text = fs::read_to_string(root().join("README.md")).expect("it can be read");
-    let page: Vec<String> = text.lines().map(str::to_owned).collect();
-    let of =
-        |block: &Block| of_console(block).into_iter().find(|step| step.command.starts_with(IN_THE_README));
-    let step = blocks(&page).iter().filter(|block| block.info == "console").find_map(of);
-    let shown = step.and_then(|step| step.shown).expect("the README shows it");
-    shown.into_iter().map(|(_, text)| text).collect()
-}
-
-/// Returns whether a command of another page is not run, because the README shows the same of it and runs it.
-fn is_left_to_the_readme(step: &Step) -> bool {
-    let is_asked = !is_thorough() && !writing() && step.command.starts_with(IN_THE_README);
-    let shown = step.shown.iter().flatten().map(|(_, text)| text);
-    is_asked && shown.eq(&shown_in_the_readme())
+/// Returns whether a command is left to the longer tests.
+fn is_left_out(command: &str) -> bool {
+    !is_thorough() && !writing() && LONG.iter().any(|beginning| command.starts_with(beginning))
 }
 
 struct Answer {
@@ -152,10 +141,8 @@ fn faults(place: &Path) -> Vec<String> {
         };
         let mut steps = steps.into_iter().peekable();
         while let Some(step) = steps.next() {
-            if OF_THE_BUILD.iter().any(|build| step.command.starts_with(build)) {
-                continue;
-            }
-            if name != "README.md" && is_left_to_the_readme(&step) {
+            if OF_THE_BUILD.iter().any(|build| step.command.starts_with(build)) || is_left_out(&step.command)
+            {
                 continue;
             }
             let answer = answer(folder.path(), &step.command);

@@ -224,7 +224,10 @@ fn a_result_is_analysed_under_the_loads_of_its_problem() {
     let folder = TempDir::new().expect("a folder");
     let problem = root().join("problems/examples/walking-stride-loaded.toml").display().to_string();
     let few = "solve.evaluations=3000";
-    let made = linkwright(folder.path(), &["synth", &problem, "--set", few, "--out", "stride", "--quiet"]);
+    let made = linkwright(
+        folder.path(),
+        &["synth", &problem, "--set", few, "--no-advice", "--out", "stride", "--quiet"],
+    );
     assert!(made.0 < 2, "{}", made.2);
     let text = fs::read_to_string(folder.path().join("stride/record.json")).expect("a record");
     let record: serde_json::Value = serde_json::from_str(&text).expect("JSON");

@@ -108,7 +108,7 @@ fn a_job_saves_the_bytes_of_synth_and_all_that_is_told_of_it_is_what_the_command
     assert_eq!(value(&guest.gets("/jobs"))["jobs"], json!([]));
     let mut ask = egg(7, 24, 2.0);
     (ask["name"], ask["unit"], ask["transmission_deg_min"]) = (json!("an egg"), json!("mm"), json!(55));
-    let job = json!({"ask": ask, "set": {"solve.evaluations": "30000"}});
+    let job = json!({"ask": ask, "set": {"solve.evaluations": "10000"}});
     let started = guest.posts("/jobs", &job);
     assert_eq!(started.status(), 201, "{}", started.0);
     let done = guest.waits_for("an%20egg", "done");
@@ -116,7 +116,7 @@ fn a_job_saves_the_bytes_of_synth_and_all_that_is_told_of_it_is_what_the_command
     // By synth, from the problem file that the page gives.
     let problem = body(&guest.posts("/problem.toml", &ask)).to_owned();
     fs::write(folder.path().join("egg.toml"), &problem).expect("written");
-    let set = "solve.evaluations=30000";
+    let set = "solve.evaluations=10000";
     linkwright(folder.path(), &["synth", "egg.toml", "--out", "own", "--set", set, "--threads", "1"]);
     let (studios, synths) = (files(&saved.join("an egg")), files(&own));
     assert!(studios.len() > 5 && studios.contains_key("report.html"));
@@ -127,7 +127,7 @@ fn a_job_saves_the_bytes_of_synth_and_all_that_is_told_of_it_is_what_the_command
     let record = guest.gets("/jobs/an%20egg/files/record.json");
     assert_eq!(body(&record).as_bytes(), studios["record.json"]);
     // A problem file's text is run as it stands; a name is not taken twice without a word.
-    let text = json!({"problem": problem.replace("an egg", "again"), "set": {"solve.evaluations": "30000"}});
+    let text = json!({"problem": problem.replace("an egg", "again"), "set": {"solve.evaluations": "10000"}});
     assert_eq!(guest.posts("/jobs", &text).status(), 201);
     guest.waits_for("again", "done");
     let again = fs::read_to_string(saved.join("again/record.json")).expect("a record");
@@ -289,7 +289,7 @@ fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio
     let saved = folder.path().join("results");
     let mut ask = egg(1, 30, 3.0);
     ask["name"] = json!("long");
-    let set = json!({"solve.method": "genetic", "solve.evaluations": "120000"});
+    let set = json!({"solve.method": "genetic", "solve.evaluations": "80000"});
     let ask = json!({"ask": ask, "set": set});
     let first = studio(&saved, "18443");
     let guest = Guest::of(&first);
@@ -327,7 +327,7 @@ fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio
     let mut text = egg(1, 30, 3.0);
     text["name"] = json!("long");
     fs::write(folder.path().join("long.toml"), body(&guest.posts("/problem.toml", &text))).expect("written");
-    let arguments = ["--set", "solve.evaluations=120000", "--method", "genetic", "--out", "own"];
+    let arguments = ["--set", "solve.evaluations=80000", "--method", "genetic", "--out", "own"];
     linkwright(folder.path(), &[&["synth", "long.toml"], &arguments[..]].concat());
     assert!(files(&saved.join("long")) == files(&folder.path().join("own")), "the records differ");
     assert_eq!(fs::read_dir(saved.join(".studio")).expect("a folder").count(), 0);
@@ -343,7 +343,7 @@ fn a_job_that_failed_keeps_its_problem_and_goes_on() {
     fs::write(&mine, "not linkwright's").expect("written");
     let mut ask = egg(1, 24, 2.0);
     ask["name"] = json!("egg");
-    let job = json!({"ask": ask, "set": {"solve.evaluations": "30000"}, "replace": true});
+    let job = json!({"ask": ask, "set": {"solve.evaluations": "10000"}, "replace": true});
     assert_eq!(guest.posts("/jobs", &job).status(), 201);
     let failed = guest.waits_for("egg", "failed");
     assert!(failed["said"].as_str().is_some_and(|said| said.contains("notes.txt")), "{failed}");
@@ -361,7 +361,7 @@ fn a_figure_that_was_changed_by_hand_is_not_shown() {
     let guest = Guest::of(&studio);
     let mut ask = egg(1, 24, 2.0);
     ask["name"] = json!("egg");
-    guest.posts("/jobs", &json!({"ask": ask, "set": {"solve.evaluations": "30000"}}));
+    guest.posts("/jobs", &json!({"ask": ask, "set": {"solve.evaluations": "10000"}}));
     guest.waits_for("egg", "done");
     let of = json!({"job": {"name": "egg", "rank": 1}});
     let asks = [("/details", json!({"of": of})), ("/export", json!({"of": of, "format": "dxf"}))];
