@@ -113,8 +113,8 @@ pub fn buildable(
         && !context.stopped()
         && let Some((tight, image)) = tight.and_then(|tight| place.image(&tight)).zip(place.image(problem))
     {
-        let known: Vec<Candidate> =
-            ranked.iter().chain(others).filter_map(|c| place.there(&image, c)).collect();
+        let until_stopped = ranked.iter().chain(others).take_while(|_| !context.stopped());
+        let known: Vec<Candidate> = until_stopped.filter_map(|c| place.there(&image, c)).collect();
         let observer = |progress: &Progress| place.report(context, progress);
         let within = Context { observer: &observer, ..context.of(&tight) };
         let left = allowance.saturating_sub(outcome.evaluations.objective);

@@ -347,7 +347,8 @@ impl Inquiry<'_> {
         let measured: Vec<Demand> = demands.iter().copied().filter(has_measure).collect();
         let Some(ladder) = Ladder::new(self.problem, &measured) else { return Ok(None) };
         let reached = |c: Candidate| Some((ladder.reached(self.problem, &c)?, c));
-        let mut reached: Vec<(Vec<f64>, Candidate)> = warm.into_iter().filter_map(reached).collect();
+        let asked = warm.into_iter().take_while(|_| !self.context.stopped());
+        let mut reached: Vec<(Vec<f64>, Candidate)> = asked.filter_map(reached).collect();
         let distance = |i: &usize| ladder.distance(&reached[*i].0);
         let nearest = (0..reached.len()).min_by(|one, other| distance(one).total_cmp(&distance(other)));
         let Some(nearest) = nearest else { return Ok(None) };

@@ -29,13 +29,16 @@ pub(super) fn led_in(
 ) -> (Vec<Candidate>, Evaluations) {
     let problem = context.problem;
     let ends = &ends[..ends.len().min(JUDGED)];
-    let mut found: Vec<Candidate> = ends.par_iter().filter_map(|end| assess_again(problem, end)).collect();
+    let goes_on = |_: &&Candidate| !context.stopped();
+    let judged = ends.par_iter().filter(goes_on).filter_map(|end| assess_again(problem, end));
+    let mut found: Vec<Candidate> = judged.collect();
     let mut spent = Evaluations::default();
     if most == 0 || found.iter().any(|candidate| candidate.accepted) {
         return (found, spent);
     }
     let mut starts: Vec<(f64, Start)> = ends
         .par_iter()
+        .filter(goes_on)
         .filter_map(|end| {
             let mut start = start_at(problem, end)?;
             Some((promise(problem, &mut start)?, start))

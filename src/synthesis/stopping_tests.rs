@@ -53,9 +53,9 @@ fn counted(job: &Job, stop_at: Option<u64>) -> (Record, Counts) {
     })
 }
 
-/// Returns the evaluations of a job: `of_every_day`, or twice as many with `THOROUGH=1`.
+/// Returns the evaluations of a job: `of_every_day`, or four times as many with `THOROUGH=1`.
 fn evaluations(of_every_day: u32) -> String {
-    let times = if is_thorough() { 2 } else { 1 };
+    let times = if is_thorough() { 4 } else { 1 };
     (times * of_every_day).to_string()
 }
 
@@ -86,12 +86,12 @@ fn asks_often_enough(name: &str, job: &Job) {
 #[test]
 fn a_search_by_least_squares_asks_about_a_stop_often_enough() {
     for (name, closed, timed) in [("closed", true, false), ("open", false, false)] {
-        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", &evaluations(1500))]));
+        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", &evaluations(700))]));
     }
     for (name, closed) in [("closed, timed", true), ("open, timed", false)] {
-        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", &evaluations(1500))]));
+        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", &evaluations(700))]));
     }
-    let few = evaluations(1500);
+    let few = evaluations(700);
     let limits = [
         ("solve.evaluations", few.as_str()),
         ("require.transmission_deg_min", "60"),
@@ -106,7 +106,7 @@ fn a_population_search_asks_about_a_stop_before_each_long_evaluation() {
         for timed in [false, true] {
             let set = [
                 ("solve.method", method),
-                ("solve.evaluations", &evaluations(400)),
+                ("solve.evaluations", &evaluations(200)),
                 ("solve.advice", "false"),
             ];
             asks_often_enough(method, &job(true, timed, &set));
