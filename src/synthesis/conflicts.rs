@@ -5,11 +5,12 @@
 //! together (a conflict) contains all that help. A minimal conflict is found by deletion: each demand that can be left
 //! out without ending the conflict is left out, one after the other. Before it is named, its demands alone are searched
 //! with as many evaluations as several trials have: what that finds refutes it and counts in the trials before, and the
-//! next claim is made with it. Demands of the conflict that did not help are tried again at that length. For each demand that helps the smallest loosening
-//! is looked for between its limits and the values attained without it: steps inward, each taken if a fit from known
-//! candidates, or else a short search, ends acceptable there. The limits are then rounded outward to few digits, and
-//! proposed only if the search itself, run with them as it would be when they are typed, ends with an accepted
-//! candidate. If no single demand helps, pairs are tried.
+//! next claim is made with it. Demands of the conflict that did not help are tried again at that length.
+//!
+//! For each demand that helps the smallest loosening is looked for between its limits and the values attained without
+//! it: steps inward, each taken if a fit from known candidates, or else a short search, ends acceptable there. The limits
+//! are then rounded outward to few digits, and proposed only if the search itself, run with them as it would be when they
+//! are typed, ends with an accepted candidate. If no single demand helps, pairs are tried.
 //!
 //! Every design that a trial finds is also judged by the problem itself, and the nearest ones are fitted under all of
 //! its requirements. An acceptable one refutes the conflict: it becomes an answer, and nothing is explained.
@@ -113,28 +114,13 @@ impl Inquiry<'_> {
 
     fn explain(&mut self) -> Result<Explained, PopulationError> {
         let demands = self.demands();
-        let (mut helping, mut found, mut among) = (Vec::new(), Vec::new(), Vec::new());
-        for _ in 0..CLAIMS {
-            let before = helping.len();
-            for &demand in &demands {
-                if !helping.contains(&demand) && !self.without(&[demand])?.is_empty() {
-                    helping.push(demand);
-                }
-            }
-            for &demand in &helping[before..] {
-                found.extend(self.relaxation(&[demand])?);
-            }
-            among = self.conflict(&demands, &helping)?;
-            if among.is_empty() || !self.is_refuted(&demands, &among)? {
-                break;
-            }
-            among.clear();
-        }
+        let (mut helping, mut found) = (Vec::new(), Vec::new());
+        let among = self.confirmed(&demands, &mut helping, &mut found)?;
         // A limit of the conflict that does not help by itself may only have been tried too briefly. The search that is
         // explained has looked for the least error already.
-        let brief: Vec<Demand> =
-            among.iter().copied().filter(|d| !helping.contains(d) && *d != Demand::TOLERANCE).collect();
-        for demand in brief.into_iter().take(CLAIMS) {
+        let is_brief = |demand: &&Demand| !helping.contains(*demand) && **demand != Demand::TOLERANCE;
+        let brief: Vec<Demand> = among.iter().filter(is_brief).take(CLAIMS).copied().collect();
+        for demand in brief {
             if !self.exhausted() && self.search_longer(&[demand])? {
                 helping.push(demand);
                 found.extend(self.relaxation(&[demand])?);
@@ -158,6 +144,32 @@ impl Inquiry<'_> {
             conflict: (!among.is_empty()).then_some(Conflict { among }),
             relaxations: found.into_iter().map(|(_, relaxation)| relaxation).collect(),
         })
+    }
+
+    /// Returns a conflict that a longer search does not refute; none if each claim is refuted. Adds the demands that help
+    /// and the least loosening of each.
+    fn confirmed(
+        &mut self,
+        demands: &[Demand],
+        helping: &mut Vec<Demand>,
+        found: &mut Vec<(f64, Relaxation)>,
+    ) -> Result<Vec<Demand>, PopulationError> {
+        for _ in 0..CLAIMS {
+            let before = helping.len();
+            for &demand in demands {
+                if !helping.contains(&demand) && !self.without(&[demand])?.is_empty() {
+                    helping.push(demand);
+                }
+            }
+            for &demand in &helping[before..] {
+                found.extend(self.relaxation(&[demand])?);
+            }
+            let among = self.conflict(demands, helping)?;
+            if among.is_empty() || !self.is_refuted(demands, &among)? {
+                return Ok(among);
+            }
+        }
+        Ok(Vec::new())
     }
 
     /// Returns the demands of the problem; of the design's bounds only those that are active at a refused candidate or

@@ -86,12 +86,12 @@ fn asks_often_enough(name: &str, job: &Job) {
 #[test]
 fn a_search_by_least_squares_asks_about_a_stop_often_enough() {
     for (name, closed, timed) in [("closed", true, false), ("open", false, false)] {
-        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", &evaluations(700))]));
+        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", &evaluations(750))]));
     }
     for (name, closed) in [("closed, timed", true), ("open, timed", false)] {
-        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", &evaluations(700))]));
+        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", &evaluations(750))]));
     }
-    let few = evaluations(700);
+    let few = evaluations(750);
     let limits = [
         ("solve.evaluations", few.as_str()),
         ("require.transmission_deg_min", "60"),

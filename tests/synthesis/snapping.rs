@@ -286,8 +286,9 @@ fn several_loops() -> [CrankLinkage; 2] {
     [six, eight].map(|linkage| CrankLinkage::MultiLoop(linkage.expect("a linkage")))
 }
 
-/// Snaps lengths of a linkage that draws its target exactly; returns whether rounding them at once was an answer too.
-fn is_snapped_to_stock(linkage: CrankLinkage) -> bool {
+/// Checks how lengths of a linkage that draws its target exactly are snapped; returns whether rounding them at once was an
+/// answer too.
+fn snapped_and_rounded_at_once(linkage: CrankLinkage) -> bool {
     let step = 5.0;
     let (problem, before) = own_curve(&linkage).expect("it closes");
     assert!(before.accepted && before.error.rms < 1e-10, "{:?}", before.requirements);
@@ -316,13 +317,13 @@ fn is_snapped_to_stock(linkage: CrankLinkage) -> bool {
 #[test]
 fn lengths_of_a_six_bar_are_snapped_too() {
     let [six_bar, _] = several_loops();
-    is_snapped_to_stock(six_bar);
+    snapped_and_rounded_at_once(six_bar);
 }
 
 #[test]
 #[ignore = "slow: .ci/run runs it"]
 fn lengths_of_an_eight_bar_are_snapped_too_and_some_are_rounded_at_once() {
-    let snapped = several_loops().map(is_snapped_to_stock);
+    let snapped = several_loops().map(snapped_and_rounded_at_once);
     assert!(snapped.contains(&true), "none was rounded at once");
 }
 
