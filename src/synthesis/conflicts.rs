@@ -18,7 +18,7 @@
 //! The results are findings, not proofs: a search that finds nothing does not prove that there is nothing to find.
 
 use super::constants::conflicts::{
-    ALLOWANCE, CLAIMS, CONFIRMING, FIT_SHARE, LED_IN, LONGER, PROPOSALS, SEARCHED_STEP, SHORTER,
+    ALLOWANCE, CONFIRMING, FIT_SHARE, LED_IN, LONGER, LONGER_TRIALS, PROPOSALS, SEARCHED_STEP, SHORTER,
     SHORTEST_STEP, STEPS, TRIAL, TRIAL_SHARE, WARM,
 };
 use super::multistart::{LONG_FIT, judged, polish};
@@ -119,7 +119,7 @@ impl Inquiry<'_> {
         // A limit of the conflict that does not help by itself may only have been tried too briefly. The search that is
         // explained has looked for the least error already.
         let is_brief = |demand: &&Demand| !helping.contains(*demand) && **demand != Demand::TOLERANCE;
-        let brief: Vec<Demand> = among.iter().filter(is_brief).take(CLAIMS).copied().collect();
+        let brief: Vec<Demand> = among.iter().filter(is_brief).take(LONGER_TRIALS).copied().collect();
         for demand in brief {
             if !self.exhausted() && self.search_longer(&[demand])? {
                 helping.push(demand);
@@ -146,15 +146,15 @@ impl Inquiry<'_> {
         })
     }
 
-    /// Returns a conflict that a longer search does not refute; none if each claim is refuted. Adds the demands that help
-    /// and the least loosening of each.
+    /// Returns a conflict that a longer search does not refute; none if as many claims as there are demands are refuted (a
+    /// refuted one is followed by a larger one). Adds the demands that help and the least loosening of each.
     fn confirmed(
         &mut self,
         demands: &[Demand],
         helping: &mut Vec<Demand>,
         found: &mut Vec<(f64, Relaxation)>,
     ) -> Result<Vec<Demand>, PopulationError> {
-        for _ in 0..CLAIMS {
+        for _ in demands {
             let before = helping.len();
             for &demand in demands {
                 if !helping.contains(&demand) && !self.without(&[demand])?.is_empty() {

@@ -622,9 +622,8 @@ pub mod conflicts {
     /// Evaluations of a search that confirms or refutes what trials found, in trials: at most those of the search that is
     /// explained.
     pub const CONFIRMING: u64 = TRIAL_SHARE;
-    /// Most conflicts that are put to that search (if each is refuted, none is named), and most demands that are tried at
-    /// that length.
-    pub const CLAIMS: usize = 3;
+    /// Most demands of a conflict that are tried at that length.
+    pub const LONGER_TRIALS: usize = 3;
     /// Most proposals.
     pub const PROPOSALS: usize = 5;
 }
