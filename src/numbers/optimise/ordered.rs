@@ -43,15 +43,17 @@ impl Ordered {
             self.pooled.fill(false);
             self.any = false;
         }
-        let after = |j: usize| gaps[j] + tau[(j + 1) % n] - tau[j];
-        let mut widest = 0;
+        let mut widest = (0, 0.0);
         let mut violated = false;
         for j in 0..n {
-            violated |= after(j) < 0.0;
-            if after(j) > after(widest) {
-                widest = j;
+            let next = if j + 1 < n { j + 1 } else { 0 };
+            let after = gaps[j] + tau[next] - tau[j];
+            violated |= after < 0.0;
+            if j == 0 || after > widest.1 {
+                widest = (j, after);
             }
         }
+        let (widest, _) = widest;
         if !violated {
             return;
         }

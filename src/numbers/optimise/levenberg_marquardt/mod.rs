@@ -274,6 +274,7 @@ struct Inner<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> {
     options: &'a LmOptions,
     stop: &'a dyn Fn() -> bool,
     work: Workspace<N, R>,
+    buffers: Buffers<R>,
     trial_state: P::State,
     merit: f64,
     damping: Damping,
@@ -284,6 +285,17 @@ struct Inner<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> {
     quiet: usize,
     /// Whether the last accepted step was slow.
     slow: bool,
+}
+
+/// The buffers of the end of a step, kept from step to step.
+#[derive(Default)]
+struct Buffers<const R: usize> {
+    /// The points' gaps at the end of a step.
+    gaps: Vec<f64>,
+    /// The points' own steps at the part [`AHEAD`] of a step, the residuals there, and their second derivatives along it.
+    own: Vec<f64>,
+    residuals: Vec<[f64; R]>,
+    second: Vec<[f64; R]>,
 }
 
 /// The end of a step with its cost and merit; the points' own unknowns are in [`Inner::trial_state`].
@@ -304,6 +316,7 @@ impl<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Inner<'a, N
         Inner {
             merit: result.cost + penalty.of(problem, &result.x, &result.state),
             work: Workspace::new(problem.points()),
+            buffers: Buffers::default(),
             trial_state: result.state.clone(),
             damping: Damping::up_to(LAST_DAMPING),
             nu: 0.0,
@@ -328,7 +341,8 @@ impl<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Inner<'a, N
                 return LmOutcome::NoDerivative;
             };
             let bounds = self.problem.bounds();
-            let Some(dx) = bounded_step(&system, &self.result.x, bounds, self.damping.value) else {
+            let equations = (&system.matrix, &system.gradient);
+            let Some(dx) = bounded_step(equations, &self.result.x, bounds, self.damping.value) else {
                 if self.damping.raise() {
                     return LmOutcome::Stalled;
                 }
@@ -393,7 +407,7 @@ impl<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Inner<'a, N
         }
         if !work.gaps.is_empty() {
             problem.join(state, work.order.leaders());
-            if !put_in_order(problem, &x, state, &work.stiffness, self.stop) {
+            if !put_in_order(problem, &x, state, (&work.stiffness, &mut self.buffers.gaps), self.stop) {
                 return None;
             }
         }
@@ -425,24 +439,26 @@ impl<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Inner<'a, N
         let (problem, at, nu) = (self.problem, &*self.result, self.nu);
         let shared: [f64; N] = (*dx).into();
         let ahead: [f64; N] = std::array::from_fn(|i| at.x[i] + AHEAD * shared[i]);
-        let own: Vec<f64> = self.work.tau.iter().map(|tau| AHEAD * tau).collect();
-        if !problem.retract(&at.x, &at.state, &own, &ahead, &mut self.trial_state) {
+        let Buffers { own, residuals, second, .. } = &mut self.buffers;
+        own.clear();
+        own.extend(self.work.tau.iter().map(|tau| AHEAD * tau));
+        if !problem.retract(&at.x, &at.state, own, &ahead, &mut self.trial_state) {
             return None;
         }
-        let (mut residuals, mut second) = (Vec::with_capacity(own.len()), Vec::with_capacity(own.len()));
-        if !problem.residuals(&ahead, &self.trial_state, &mut residuals) {
+        residuals.clear();
+        if !problem.residuals(&ahead, &self.trial_state, residuals) {
             return None;
         }
-        let gradient = self.work.bending(&residuals, &shared, nu, &mut second);
+        let gradient = self.work.bending(residuals, &shared, nu, second);
         let after: [f64; N] = std::array::from_fn(|i| at.x[i] + shared[i]);
-        let bent = Normal { matrix: system.matrix, gradient, tangent_sq: system.tangent_sq };
-        let half = 0.5 * bounded_step(&bent, &after, problem.bounds(), self.damping.value)?;
+        let equations = (&system.matrix, &gradient);
+        let half = 0.5 * bounded_step(equations, &after, problem.bounds(), self.damping.value)?;
         let length = |v: &SVector<f64, N>| (0..N).map(|i| system.matrix[(i, i)] * v[i] * v[i]).sum::<f64>();
         if length(&half).is_nan() || length(&half) > MOST_BENT * MOST_BENT * length(dx) {
             return None;
         }
         let half = half.into();
-        self.work.bend_own_steps(&half, &second, nu);
+        self.work.bend_own_steps(&half, second, nu);
         Some(moved(&after, &half, problem.bounds()))
     }
 
@@ -460,21 +476,20 @@ impl<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Inner<'a, N
 }
 
 /// Pools points that have passed each other in a step after all, because the way back to the curves is not straight;
-/// `false` if that fails or `stop` returns true.
+/// `false` if that fails or `stop` returns true. `gaps` is a buffer.
 fn put_in_order<const N: usize, const R: usize, P: BlockLeastSquares<N, R>>(
     problem: &P,
     x: &[f64; N],
     state: &mut P::State,
-    stiffness: &[f64],
+    (stiffness, gaps): (&[f64], &mut Vec<f64>),
     stop: &dyn Fn() -> bool,
 ) -> bool {
-    let mut gaps = Vec::with_capacity(stiffness.len());
     for _ in 0..MOST_REPAIRS {
         if stop() {
             return false;
         }
         gaps.clear();
-        if !problem.gaps(x, state, &mut gaps) {
+        if !problem.gaps(x, state, gaps) {
             return true;
         }
         // Only points that are near each other have just passed: over longer ways a gap is a rough measure.
@@ -484,7 +499,7 @@ fn put_in_order<const N: usize, const R: usize, P: BlockLeastSquares<N, R>>(
         }
         let mut order = Ordered::new(gaps.len());
         let mut tau = vec![0.0; gaps.len()];
-        order.pool(&gaps, &mut tau, stiffness);
+        order.pool(gaps, &mut tau, stiffness);
         let before = state.clone();
         if !problem.retract(x, &before, &tau, x, state) {
             return false;

@@ -196,20 +196,19 @@ impl<const N: usize> Rows<N> {
         let mut matrix = [[0.0; N]; N];
         let mut gradient = [0.0; N];
         for i in 0..N {
-            let mut sums = [F64x8::splat(0.0); N];
-            let mut by_residual = F64x8::splat(0.0);
-            for (block, residual) in self.jacobian.iter().zip(&self.residual) {
-                let column = block[i];
-                for k in i..N {
-                    sums[k] = sums[k] + column * block[k];
-                }
-                by_residual = by_residual + column * *residual;
-            }
             for k in i..N {
-                matrix[i][k] = sums[k].0.iter().sum();
+                let mut sum = F64x8::splat(0.0);
+                for block in &self.jacobian {
+                    sum = sum + block[i] * block[k];
+                }
+                matrix[i][k] = sum.0.iter().sum();
                 matrix[k][i] = matrix[i][k];
             }
-            gradient[i] = by_residual.0.iter().sum();
+            let mut sum = F64x8::splat(0.0);
+            for (block, residual) in self.jacobian.iter().zip(&self.residual) {
+                sum = sum + block[i] * *residual;
+            }
+            gradient[i] = sum.0.iter().sum();
         }
         (matrix, gradient)
     }
@@ -312,7 +311,8 @@ pub(super) fn assemble<const N: usize, const R: usize, P: BlockLeastSquares<N, R
             add_row(&mut matrix, &mut gradient, penalty.rho, &row.gradient.map(|g| -g), lack);
         }
     });
-    let usable = matrix.iter().flatten().chain(gradient.iter()).all(|v| v.is_finite());
+    // Without a way out of the loop it becomes vector instructions.
+    let usable = matrix.iter().flatten().chain(&gradient).fold(true, |all, v| all & v.is_finite());
     usable.then(|| Normal {
         matrix: SMatrix::from_fn(|i, k| matrix[i][k]),
         gradient: SVector::from(gradient),
@@ -324,14 +324,14 @@ pub(super) fn assemble<const N: usize, const R: usize, P: BlockLeastSquares<N, R
 /// the rest is solved again, so that the step is the model's minimum on the face that it ends on. `None` if the
 /// damped matrix is not positive definite.
 pub(super) fn bounded_step<const N: usize>(
-    system: &Normal<N>,
+    (matrix, gradient): (&SMatrix<f64, N, N>, &SVector<f64, N>),
     x: &[f64; N],
     bounds: &[(f64, f64); N],
     damping: f64,
 ) -> Option<SVector<f64, N>> {
-    let mut damped = system.matrix;
+    let mut damped = *matrix;
     let diagonal_max = (0..N).map(|i| damped[(i, i)]).fold(f64::MIN_POSITIVE, f64::max);
-    let mut held = held(x, bounds, &system.gradient.into());
+    let mut held = held(x, bounds, &(*gradient).into());
     let mut dx = SVector::<f64, N>::zeros();
     for i in 0..N {
         held[i] |= damped[(i, i)] == 0.0;
@@ -339,8 +339,11 @@ pub(super) fn bounded_step<const N: usize>(
     }
     for _ in 0..=N {
         let mut matrix = damped;
-        let mut right =
-            -(system.gradient + damped * SVector::from_fn(|i, _| if held[i] { dx[i] } else { 0.0 }));
+        let mut by_held = SVector::<f64, N>::zeros();
+        for i in (0..N).filter(|&i| held[i]) {
+            by_held += damped.column(i) * dx[i];
+        }
+        let mut right = -(gradient + by_held);
         for i in (0..N).filter(|&i| held[i]) {
             for k in 0..N {
                 matrix[(i, k)] = 0.0;

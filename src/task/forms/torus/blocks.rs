@@ -3,6 +3,7 @@
 use crate::mechanism::Complex;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 use crate::task::forms::design_space::Shape;
+use smallvec::SmallVec;
 
 /// Most Newton steps that bring a position back to its curve; each squares the miss.
 pub(in crate::task::forms) const RETURN_STEPS: usize = 12;
@@ -76,9 +77,12 @@ fn turn(x: F64x8, y: F64x8, angle: F64x8) -> (F64x8, F64x8) {
     (x * unit, y * unit)
 }
 
+/// The most blocks that stand on the stack: those of a target of few points, or of a dense one in its groups.
+const ON_STACK: usize = 4;
+
 /// Positions as blocks of e_x, e_y, u_x, u_y, each of [`LANES`] positions side by side. The last block is filled up with the
 /// last position.
-pub(in crate::task::forms) struct Blocks(Vec<[F64x8; 4]>);
+pub(in crate::task::forms) struct Blocks(SmallVec<[[F64x8; 4]; ON_STACK]>);
 
 impl Blocks {
     pub(in crate::task::forms) fn gather(positions: &[[Complex; 2]]) -> Blocks {
