@@ -146,8 +146,8 @@ impl Inquiry<'_> {
         })
     }
 
-    /// Returns a conflict that a longer search does not refute; none if as many claims as there are demands are refuted (a
-    /// refuted one is followed by a larger one). Adds the demands that help and the least loosening of each.
+    /// Returns a conflict that a longer search does not refute; none if as many are refuted as there are demands. What
+    /// refutes one counts in the next. Adds the demands that help and the least loosening of each.
     fn confirmed(
         &mut self,
         demands: &[Demand],
