@@ -120,12 +120,12 @@ export async function begun(house, more = [], options = {}) {
 
 export const status = (page) => page.locator("#status").textContent();
 
-/** Waits until the last edit is answered and this is done for it: what conflicts takes a minute on a slow machine. */
+/** Waits until the last edit is answered and this is done for it. */
 export const doing = (page, what) =>
   page.waitForFunction(
     (what) => document.body.dataset.doing === what && document.body.dataset.answered === document.body.dataset.asked,
     what,
-    { timeout: 180_000 },
+    { timeout: 90_000 },
   );
 
 /** Opens a tab beside the board. */

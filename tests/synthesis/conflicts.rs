@@ -3,7 +3,7 @@
 use crate::common::thorough::{cases, is_thorough};
 use crate::common::{bytes, job, literature, load, root, run_on};
 use linkwright::internals::app::job::run::{Context, run};
-use linkwright::internals::files::problem_file::ProblemFile;
+use linkwright::internals::files::problem_file::{ProblemFile, parse};
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::record::{Change, RELAXED, Reason, Record, Relaxation};
 use std::path::PathBuf;
@@ -264,8 +264,7 @@ fn guide(length: f64, seed: u64, evaluations: u64, set: &[(&str, &str)]) -> Prob
         0.75 * length
     );
     let set: Vec<_> = set.iter().map(|(k, v)| ((*k).to_string(), (*v).to_string())).collect();
-    linkwright::internals::files::problem_file::parse("guide.toml", &text, None, &set)
-        .unwrap_or_else(|e| panic!("{e}"))
+    parse("guide.toml", &text, None, &set).unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]
@@ -278,6 +277,20 @@ fn a_guide_that_is_possible_is_found_and_named_no_conflict() {
         assert_eq!(record.conflict, None, "{length} {seed}");
         assert!(verify(&record).expect("a problem").is_empty(), "{length} {seed}");
     }
+}
+
+/// Longer searches refute one claim after the other, from two requirements to four, before one holds.
+#[test]
+#[ignore = "slow: .ci/run runs it"]
+fn a_conflict_is_named_however_many_claims_were_refuted_before_it() {
+    let text = "format = 1\n[task.path]\npoints = [[0, 0], [10, 4], [20, 5], [30, 4], [40, 0]]\nclosed = false\n\
+                tolerance = 0.01\n[require]\ntype = [\"crank-rocker\", \"double-crank\"]\ntransmission_deg_min = 89\n\
+                pivots_in = [-80, 60, 80, 180]\n[solve]\nseed = 1\n";
+    let record = run_on(2, parse("stroke.toml", text, None, &[]).unwrap_or_else(|e| panic!("{e}")));
+    let conflict = record.conflict.as_ref().expect("a conflict");
+    assert_eq!(conflict.among, ["require.transmission_deg_min", "task.path.tolerance"]);
+    assert_eq!(record.relaxations[0].set[0].key, "require.transmission_deg_min");
+    assert_eq!(verify(&record).expect("the problem is one"), Vec::new());
 }
 
 /// The search of this seed finds nothing acceptable; the analysis of its conflict does, and that is the answer.

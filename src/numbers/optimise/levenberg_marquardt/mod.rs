@@ -56,7 +56,7 @@ pub trait BlockLeastSquares<const N: usize, const R: usize = 2> {
     /// Passes the blocks of all points to `each`, in their order; `false` if a derivative does not exist.
     fn linearise(&self, x: &[f64; N], state: &Self::State, each: &mut dyn FnMut(&PointBlock<N, R>)) -> bool;
 
-    /// Computes the residuals r_j of all points, in their order; `false` if one does not exist.
+    /// Computes the residuals r_j of all points into `out`, in their order; `false` if one does not exist.
     fn residuals(&self, x: &[f64; N], state: &Self::State, out: &mut Vec<[f64; R]>) -> bool {
         out.clear();
         self.linearise(x, state, &mut |block| out.push(block.residual))
@@ -287,7 +287,8 @@ struct Inner<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> {
     slow: bool,
 }
 
-/// The buffers of the end of a step, kept from step to step.
+/// The buffers for the end of a step, kept from step to step. They stand beside the [`Workspace`], which is read while
+/// they are written.
 #[derive(Default)]
 struct Buffers<const R: usize> {
     /// The points' gaps at the end of a step.
@@ -341,8 +342,8 @@ impl<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Inner<'a, N
                 return LmOutcome::NoDerivative;
             };
             let bounds = self.problem.bounds();
-            let equations = (&system.matrix, &system.gradient);
-            let Some(dx) = bounded_step(equations, &self.result.x, bounds, self.damping.value) else {
+            let (x, damping) = (&self.result.x, self.damping.value);
+            let Some(dx) = bounded_step(&system.matrix, &system.gradient, x, bounds, damping) else {
                 if self.damping.raise() {
                     return LmOutcome::Stalled;
                 }
@@ -407,7 +408,7 @@ impl<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Inner<'a, N
         }
         if !work.gaps.is_empty() {
             problem.join(state, work.order.leaders());
-            if !put_in_order(problem, &x, state, (&work.stiffness, &mut self.buffers.gaps), self.stop) {
+            if !put_in_order(problem, &x, state, &work.stiffness, &mut self.buffers.gaps, self.stop) {
                 return None;
             }
         }
@@ -445,14 +446,13 @@ impl<'a, const N: usize, const R: usize, P: BlockLeastSquares<N, R>> Inner<'a, N
         if !problem.retract(&at.x, &at.state, own, &ahead, &mut self.trial_state) {
             return None;
         }
-        residuals.clear();
         if !problem.residuals(&ahead, &self.trial_state, residuals) {
             return None;
         }
         let gradient = self.work.bending(residuals, &shared, nu, second);
         let after: [f64; N] = std::array::from_fn(|i| at.x[i] + shared[i]);
-        let equations = (&system.matrix, &gradient);
-        let half = 0.5 * bounded_step(equations, &after, problem.bounds(), self.damping.value)?;
+        let (bounds, damping) = (problem.bounds(), self.damping.value);
+        let half = 0.5 * bounded_step(&system.matrix, &gradient, &after, bounds, damping)?;
         let length = |v: &SVector<f64, N>| (0..N).map(|i| system.matrix[(i, i)] * v[i] * v[i]).sum::<f64>();
         if length(&half).is_nan() || length(&half) > MOST_BENT * MOST_BENT * length(dx) {
             return None;
@@ -481,7 +481,8 @@ fn put_in_order<const N: usize, const R: usize, P: BlockLeastSquares<N, R>>(
     problem: &P,
     x: &[f64; N],
     state: &mut P::State,
-    (stiffness, gaps): (&[f64], &mut Vec<f64>),
+    stiffness: &[f64],
+    gaps: &mut Vec<f64>,
     stop: &dyn Fn() -> bool,
 ) -> bool {
     for _ in 0..MOST_REPAIRS {

@@ -324,7 +324,8 @@ pub(super) fn assemble<const N: usize, const R: usize, P: BlockLeastSquares<N, R
 /// the rest is solved again, so that the step is the model's minimum on the face that it ends on. `None` if the
 /// damped matrix is not positive definite.
 pub(super) fn bounded_step<const N: usize>(
-    (matrix, gradient): (&SMatrix<f64, N, N>, &SVector<f64, N>),
+    matrix: &SMatrix<f64, N, N>,
+    gradient: &SVector<f64, N>,
     x: &[f64; N],
     bounds: &[(f64, f64); N],
     damping: f64,

@@ -138,7 +138,7 @@ fn assert_eliminates<const R: usize>(gaps: bool) {
         return;
     }
     // The step of the full system, and the reduction that it promises without damping of the shared unknowns.
-    let dx = bounded_step((&normal.matrix, &normal.gradient), &at.x, &ANYWHERE, 0.0).expect("it is definite");
+    let dx = bounded_step(&normal.matrix, &normal.gradient, &at.x, &ANYWHERE, 0.0).expect("it is definite");
     let whole = -matrix.clone().cholesky().expect("it is definite").solve(&gradient);
     work.own_steps_after(&dx.into(), nu);
     let after = |axis: usize, j: usize| {
