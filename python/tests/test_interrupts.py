@@ -17,11 +17,13 @@ import linkwright as lw
 
 #: The longest life of a child, seconds: it ends by itself if the tests are killed.
 LIFE = 180
-#: A problem whose search takes minutes. The system's own answer to the alarm ends the child, whatever it is doing.
+#: A problem whose search takes minutes. The system's own answer to the alarm ends the child, whatever it is doing. Ctrl-C
+#: raises KeyboardInterrupt also where these tests are a shell's background job, which inherits that it is ignored.
 LONG = textwrap.dedent(
     f"""
     import linkwright as lw, math, signal
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.alarm({LIFE})
     points = [[math.cos(t) + 0.3 * math.cos(3 * t), math.sin(t) + 0.2 * math.sin(5 * t)]
               for t in (0.1 * i for i in range(60))]
